@@ -1,0 +1,92 @@
+/* A study: a validated study file with its typed values and the grid of tasks that its sweeps span.
+ *
+ * Reading is strict: an unknown key (the nearest known one is named), a duplicate key, a wrong type, trailing
+ * characters, a value out of range, anchors, aliases, tags, a second document, nesting deeper than 32, files over 8 MiB
+ * are refused with `FILE:LINE:`, key, value and what is allowed. Nothing of MPI or HDF5 is known here. */
+#ifndef RICOCHET_APP_STUDY_H
+#define RICOCHET_APP_STUDY_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "message.h"
+#include "schema.h"
+
+enum {
+  STUDY_MAX_BYTES = 8 << 20, /* size of a study file */
+  STUDY_MAX_DEPTH = 32,      /* nesting of its nodes */
+  STUDY_MAX_SWEEPS = 8
+};
+
+typedef struct study study;
+
+/** One entry of `sweep`: a parameter and its values. */
+typedef struct study_sweep {
+  char name[96];        /* as written: "model.gamma", "model.floor[3]" */
+  study_key key;
+  long item;            /* index of a list element, -1 for a scalar */
+  size_t points;
+  const double *values; /* [points] */
+} study_sweep;
+
+/** Reads a whole file into memory.
+ *  @param text  set to malloc'd bytes with a terminating 0; the caller frees
+ *  @returns 0, EXIT_FILES when it cannot be read, EXIT_USAGE when it is larger than STUDY_MAX_BYTES. */
+int study_read_file(const char *path, char **text, size_t *length, message *why);
+
+/** Parses and validates a study.
+ *  @param name  how messages call the text, usually the file's path
+ *  @param sets  `--set` assignments "path=value", the value in YAML; applied to the tree before validation, so any key
+ *               can be set, also `sweep[0].points`. Messages about them begin with `--set path=value:`
+ *  @returns 0 or EXIT_USAGE. */
+int study_parse(const char *name, const char *text, size_t length, const char *const *sets, size_t n_sets, study **out,
+                message *why);
+void study_destroy(study **s);
+
+/** How messages call this study (the `name` it was parsed under). */
+const char *study_name(const study *s);
+
+/** Line of a key in the file, 0 when the key was not given there (default, or `--set`). */
+size_t study_line(const study *s, study_key key);
+
+/** "FILE:LINE: model.gamma" of a key, or "--set model.gamma=3: model.gamma", or "FILE: model.gamma" for a default. */
+void study_place(const study *s, study_key key, char *text, size_t size);
+
+/** The YAML text as run: the file's own text, or the tree written out again where `--set` changed it. */
+const char *study_text(const study *s);
+
+/** 64-bit digest of every value and sweep (comments and layout do not count): equal for the same study. */
+uint64_t study_digest(const study *s);
+
+size_t study_sweeps(const study *s);
+const study_sweep *study_sweep_at(const study *s, size_t index);
+
+/** Number of grid points, the product over the sweeps; 1 without a sweep. Less than 2^40. */
+uint64_t study_tasks(const study *s);
+
+/** Value of sweep `index` at a task; the last sweep varies fastest. */
+double study_sweep_value(const study *s, size_t index, uint64_t task);
+
+/* The values of one task: the study's values with the swept ones replaced. */
+
+typedef struct study_values study_values;
+
+/** Borrows the study, which must outlive it. Starts at task 0. @returns NULL when out of memory. */
+study_values *study_values_create(const study *s);
+void study_values_destroy(study_values **v);
+void study_values_at(study_values *v, uint64_t task);
+
+/** Whether the key was given (in the file or by --set) or has a default. */
+bool value_present(const study_values *v, study_key key);
+/** Whether the value is a list. */
+bool value_is_list(const study_values *v, study_key key);
+/** Elements of a list; 1 for a scalar, 0 when absent. */
+size_t value_count(const study_values *v, study_key key);
+/** Element `i` of a number, integer or flag value, scalar or list; null reads as -INFINITY. */
+double value_number(const study_values *v, study_key key, size_t i);
+bool value_flag(const study_values *v, study_key key);
+/** Word or text; "" when absent. */
+const char *value_word(const study_values *v, study_key key);
+
+#endif

@@ -1,0 +1,64 @@
+#include "table.h"
+
+#include <stdint.h>
+#include <string.h>
+
+size_t column_value_bytes(const column *c) {
+  switch (c->type) {
+  case COLUMN_F64:
+  case COLUMN_I64:
+    return 8;
+  case COLUMN_ENUM:
+    return 1;
+  case COLUMN_TEXT:
+    return c->text_bytes;
+  }
+  return 0;
+}
+
+size_t table_lay_out(table *t) {
+  size_t at = 0;
+  for (size_t i = 0; i < t->column_count; i++) {
+    column *c = &t->columns[i];
+    c->offset = at;
+    at += (c->extent * column_value_bytes(c) + 7) / 8 * 8;
+  }
+  t->row_bytes = at;
+  return at;
+}
+
+const column *table_column(const table *t, const char *name) {
+  for (size_t i = 0; i < t->column_count; i++)
+    if (strcmp(t->columns[i].name, name) == 0)
+      return &t->columns[i];
+  return NULL;
+}
+
+void row_put_numbers(unsigned char *row, const column *c, const double *values) {
+  if (c && c->extent > 0)
+    memcpy(row + c->offset, values, c->extent * sizeof *values);
+}
+
+void row_put_number(unsigned char *row, const column *c, double value) {
+  if (c)
+    memcpy(row + c->offset, &value, sizeof value);
+}
+
+void row_put_integer(unsigned char *row, const column *c, long value) {
+  int64_t wide = value;
+  if (c)
+    memcpy(row + c->offset, &wide, sizeof wide);
+}
+
+void row_put_word(unsigned char *row, const column *c, int value) {
+  if (c)
+    row[c->offset] = (unsigned char)value;
+}
+
+void row_put_text(unsigned char *row, const column *c, const char *text) {
+  if (!c)
+    return;
+  size_t length = strnlen(text, c->text_bytes);
+  memset(row + c->offset, 0, c->text_bytes);
+  memcpy(row + c->offset, text, length);
+}

@@ -1,0 +1,55 @@
+/* The layout of result rows: a table is a list of columns, a row of it one block of bytes.
+ *
+ * A kind of study describes its results as a table; the evaluation of a task fills one row. Checkpoint, result writer,
+ * `show` and the schema page all read this description, so a column is added in one place. */
+#ifndef RICOCHET_APP_TABLE_H
+#define RICOCHET_APP_TABLE_H
+
+#include <stddef.h>
+
+typedef enum column_type {
+  COLUMN_F64,
+  COLUMN_I64,
+  COLUMN_ENUM, /* one signed byte; names give the values 0, 1, 2, ... */
+  COLUMN_TEXT  /* fixed length, zero padded */
+} column_type;
+
+typedef struct column {
+  const char *name; /* data set in the table's group */
+  column_type type;
+  const char *axis;         /* name of the second axis' dimension scale in the root group; NULL: one value per row */
+  size_t extent;            /* values along that axis, may be 0; 1 without an axis */
+  size_t text_bytes;        /* bytes of a COLUMN_TEXT value */
+  const char *const *names; /* words of a COLUMN_ENUM */
+  size_t name_count;
+  const char *units, *long_name, *source;
+  size_t offset; /* of the first value in a row; set by table_lay_out, a multiple of 8 */
+} column;
+
+enum { TABLE_MAX_COLUMNS = 32 };
+
+typedef struct table {
+  const char *group;    /* "orbits" */
+  const char *row_axis; /* dimension scale of the rows: "task" for tables with a row per task */
+  column columns[TABLE_MAX_COLUMNS];
+  size_t column_count;
+  size_t row_bytes;
+} table;
+
+/** Bytes of one value of a column: 8, 1, or text_bytes. */
+size_t column_value_bytes(const column *c);
+
+/** Sets the offsets and row_bytes; returns row_bytes. */
+size_t table_lay_out(table *t);
+
+/** Column by name, NULL when the table has none. */
+const column *table_column(const table *t, const char *name);
+
+/* Writing into a row. A NULL column (a table without it) is skipped, so that optional columns need no test. */
+void row_put_numbers(unsigned char *row, const column *c, const double *values);
+void row_put_number(unsigned char *row, const column *c, double value);
+void row_put_integer(unsigned char *row, const column *c, long value);
+void row_put_word(unsigned char *row, const column *c, int value);
+void row_put_text(unsigned char *row, const column *c, const char *text);
+
+#endif
