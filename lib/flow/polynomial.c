@@ -1,0 +1,174 @@
+#include "ricochet/polynomial.h"
+
+#include <math.h>
+#include <stddef.h>
+
+enum { SIZE = RIC_POLY_DEGREE + 1, DEPTH = 52 /* halvings of [0, 1] that doubles resolve */ };
+
+double ric_poly_value(const double *c, int degree, double x, double *slope) {
+  double value = c[degree], derivative = 0;
+  for (int j = degree - 1; j >= 0; j--) {
+    derivative = derivative * x + value;
+    value = value * x + c[j];
+  }
+  if (slope)
+    *slope = derivative;
+  return value;
+}
+
+double ric_poly_lower_bound(const double *c, int degree) {
+  double bound = c[0];
+  for (int j = 1; j <= degree; j++)
+    bound += fmin(c[j], 0);
+  return bound;
+}
+
+/* The scaled coefficients c_j / binomial(d, j) are the forward differences of b at 0; summing them up gives b. */
+void ric_poly_bernstein(const double *c, int degree, double *b) {
+  double inverse_binomial = 1;
+  for (int j = 0; j <= degree; j++) {
+    b[j] = c[j] * inverse_binomial;
+    inverse_binomial *= (double)(j + 1) / (double)(degree - j);
+  }
+  for (int r = 0; r < degree; r++)
+    for (int j = degree; j > r; j--)
+      b[j] += b[j - 1];
+}
+
+void ric_poly_reflect(const double *c, int degree, double *r) {
+  for (int j = 0; j <= degree; j++)
+    r[j] = c[j];
+  for (int k = 0; k < degree; k++) /* Taylor shift to 1 by repeated division */
+    for (int j = degree - 1; j >= k; j--)
+      r[j] += r[j + 1];
+  for (int j = 1; j <= degree; j += 2)
+    r[j] = -r[j];
+}
+
+/* A piece [start, start + width] of the unit interval with its Bernstein coefficients. */
+typedef struct piece {
+  double start, width;
+  double b[SIZE];
+} piece;
+
+/* de Casteljau at 1/2: `left` takes the first half, `p` keeps the second. */
+static void halve(piece *p, piece *left, int degree) {
+  p->width /= 2;
+  left->start = p->start;
+  left->width = p->width;
+  p->start += p->width;
+  for (int r = 0; r < degree; r++) {
+    left->b[r] = p->b[0];
+    for (int j = 0; j < degree - r; j++)
+      p->b[j] = (p->b[j] + p->b[j + 1]) / 2;
+  }
+  left->b[degree] = p->b[0];
+}
+
+static double smallest(const double *b, int degree) {
+  double least = b[0];
+  for (int j = 1; j <= degree; j++)
+    least = fmin(least, b[j]);
+  return least;
+}
+
+/* Number of sign changes of the Bernstein coefficients of the polynomial (order 0) or of its derivative (order 1): at
+ * least the number of roots, and equal to it when 0 or 1. `first` is set to the first sign. */
+static int sign_changes(const double *b, int degree, int order, int *first) {
+  int changes = 0, last = 0;
+  *first = 0;
+  for (int j = 0; j <= degree - order; j++) {
+    double x = order ? b[j + 1] - b[j] : b[j];
+    int sign = (x > 0) - (x < 0);
+    if (sign == 0)
+      continue;
+    changes += last == -sign;
+    *first = last ? *first : sign;
+    last = sign;
+  }
+  return changes;
+}
+
+/* The only root of the polynomial (order 0, falling) or of its derivative (order 1, rising) in [low, high]: Newton's
+ * method inside a shrinking bracket. */
+static double bracketed_root(const double *c, int degree, int order, double low, double high) {
+  double d[SIZE];
+  for (int j = 0; j <= degree - order; j++)
+    d[j] = order ? (j + 1) * c[j + 1] : -c[j];
+  double x = (low + high) / 2;
+  for (int i = 0; i < 2 * DEPTH; i++) {
+    double slope, value = ric_poly_value(d, degree - order, x, &slope);
+    if (value > 0)
+      high = x;
+    else
+      low = x;
+    double next = x - value / slope;
+    if (!(next > low && next < high))
+      next = (low + high) / 2;
+    if (fabs(next - x) <= 1e-16)
+      return next;
+    x = next;
+  }
+  return x;
+}
+
+static void improve(double *best, double *best_at, double value, double at) {
+  if (value < *best) {
+    *best = value;
+    *best_at = at;
+  }
+}
+
+int ric_poly_minimum(const double *c, int degree, double cutoff, double tolerance, double *at, double *value) {
+  if (ric_poly_lower_bound(c, degree) > cutoff)
+    return 0;
+  piece stack[DEPTH + 1];
+  double best = INFINITY, best_at = 0;
+  int depth = 1;
+  stack[0].start = 0, stack[0].width = 1;
+  ric_poly_bernstein(c, degree, stack[0].b);
+  while (depth > 0) {
+    piece *p = &stack[--depth];
+    improve(&best, &best_at, p->b[0], p->start);
+    improve(&best, &best_at, p->b[degree], p->start + p->width);
+    double least = smallest(p->b, degree);
+    if (least >= best - tolerance || least > cutoff)
+      continue;
+    int first, changes = sign_changes(p->b, degree, 1, &first);
+    if (changes == 1 && first < 0) {
+      double x = bracketed_root(c, degree, 1, p->start, p->start + p->width);
+      improve(&best, &best_at, ric_poly_value(c, degree, x, NULL), x);
+    } else if (changes > 1 && depth < DEPTH) {
+      halve(p, p + 1, degree);
+      depth += 2;
+    }
+  }
+  if (!(best <= cutoff))
+    return 0;
+  *at = best_at;
+  *value = best;
+  return 1;
+}
+
+int ric_poly_first_root(const double *c, int degree, double *at) {
+  piece stack[DEPTH + 1];
+  int depth = 1;
+  stack[0].start = 0, stack[0].width = 1;
+  ric_poly_bernstein(c, degree, stack[0].b);
+  while (depth > 0) {
+    piece *p = &stack[--depth];
+    int first, changes = sign_changes(p->b, degree, 0, &first);
+    if (p->b[0] > 0 && changes == 0)
+      continue;
+    if (p->b[0] > 0 && changes == 1)
+      *at = bracketed_root(c, degree, 0, p->start, p->start + p->width);
+    else if (p->b[0] > 0 && depth < DEPTH) {
+      halve(p, p + 1, degree); /* the first half lands on top and is looked at first */
+      depth += 2;
+      continue;
+    } else
+      *at = p->start;
+    return 1;
+  }
+  return 0;
+}

@@ -1,0 +1,133 @@
+/* Periodic orbits of the chain with a given impact pattern.
+ *
+ * One orbit struct, however the orbit was found: state at t = 0+ and at t = T/2-, impulses, energy, residual, and an
+ * outcome with its reason. The orbits here are conservative (restitution 1) with at most one impact per particle and
+ * period, at t = 0 or t = T/2, and even about both times.
+ *
+ * Two solvers fill it. `impulse` superposes the responses of the modes to periodic unit impulses,
+ *
+ *   q(t) = sum_l p_l G_{.l}(t - t_l),   G_kl(t) = sum_j phi_j(k) phi_j(l) cos(omega_j (T/2 - t)) / (2 omega_j
+ * sin(omega_j T/2)),
+ *
+ * and solves the contact conditions q_k(t_k) = b_k, one linear equation per impact: O(n log n + m^3), explicit in
+ * gamma, spatially periodic patterns on their unit cell. `dense` solves the boundary-value problem (10)-(11) of [JAP]
+ * with the exponential of the 2n x 2n matrix: the reference, O(n^3).
+ *
+ * Outcomes (they are results, not errors):
+ *   admissible   impulses positive, every gap positive between impacts (9), certified on the whole period
+ *   inadmissible a solution of the equations that violates one of the two; the reason says which first, where and when
+ *   grazing      an impulse or a gap vanishes within grazing_tol; in particular a mode that the pattern excites is at
+ *                resonance: the impulses are zero and the orbit is a linear mode that touches the floor
+ *   resonant     a mode at resonance vanishes at every contact: the orbit exists and is not unique, the amplitude of
+ *                that mode is free (0 in the orbit given)
+ *   singular     the contact matrix is singular: no orbit, amplitudes blow up nearby; states are NaN
+ *   not_converged, failed  no result, with the reason */
+#ifndef RICOCHET_ORBIT_H
+#define RICOCHET_ORBIT_H
+
+#include <stddef.h>
+
+#include "chain.h"
+#include "pattern.h"
+#include "resonance.h"
+
+#define RIC_OUTCOME_LIST(X)                                                                                            \
+  X(RIC_ADMISSIBLE, "admissible")                                                                                      \
+  X(RIC_INADMISSIBLE, "inadmissible")                                                                                  \
+  X(RIC_GRAZING, "grazing")                                                                                            \
+  X(RIC_RESONANT, "resonant")                                                                                          \
+  X(RIC_SINGULAR, "singular")                                                                                          \
+  X(RIC_NOT_CONVERGED, "not_converged")                                                                                \
+  X(RIC_FAILED, "failed")
+
+typedef enum ric_outcome {
+#define X(name, text) name,
+  RIC_OUTCOME_LIST(X)
+#undef X
+      RIC_OUTCOME_COUNT
+} ric_outcome;
+
+/** Name of an outcome, "admissible". Never NULL. */
+RIC_API const char *ric_outcome_name(ric_outcome outcome);
+
+typedef enum ric_orbit_method { RIC_METHOD_IMPULSE, RIC_METHOD_DENSE } ric_orbit_method;
+
+enum { RIC_REASON_BYTES = 192, RIC_DENSE_PARTICLES = 400 /* largest chain of the dense method */ };
+
+/** Tolerances, all relative to the largest displacement of the orbit unless said otherwise. */
+typedef struct ric_orbit_options {
+  ric_orbit_method method;
+  double clearance_tol;      /* 1e-12: the clearance lies within it of the true minimum; a hundred times the rounding */
+  double grazing_tol;        /* 1e-10: gaps and impulses smaller than it count as zero */
+  double residual_tol;       /* 1e-9: equations violated by more make the orbit `failed` */
+  double resonance_tol;      /* 1e-10: |omega_j T / (2 pi) - l| below it is a resonance. Absolute */
+  double singular_condition; /* 1e9: condition numbers above it are singular; results there would keep seven digits */
+  ric_poll poll;
+} ric_orbit_options;
+
+RIC_API ric_orbit_options ric_orbit_options_default(void);
+
+/** A periodic orbit. Storage of the caller: ric_orbit_init, ric_orbit_clear. */
+typedef struct ric_orbit {
+  ric_outcome outcome;
+  char reason[RIC_REASON_BYTES]; /* why, for people; "" when admissible */
+  double period;
+  size_t particles;        /* n */
+  size_t impacts;          /* m */
+  double *q, *v;           /* [n] state at t = 0+ */
+  double *q_half, *v_half; /* [n] state at t = (T/2)-, before the impacts there */
+  double *impulse;         /* [m] velocity jumps, in the order of the pattern */
+  double energy;           /* total, constant along the orbit */
+  double residual;         /* largest violation of the contact conditions, and of the motion joining both states */
+  double clearance;      /* smallest gap of the free particles that have a floor, over the whole period; NaN if none */
+  double clearance_time; /* when, in [0, T/2]; NaN */
+  long long clearance_particle; /* which; -1 */
+  double condition;  /* impulse: largest free response over the response at the contacts; dense: of its matrix */
+  long long mode;    /* the resonant mode of `grazing` and `resonant`; -1 */
+  unsigned harmonic; /* l of that resonance; 0 */
+} ric_orbit;
+
+/** Allocates the arrays. @returns RIC_ENOMEM, RIC_EINVAL for a size of 0. */
+RIC_API ric_status ric_orbit_init(ric_orbit *orbit, size_t particles, size_t impacts, ric_error *error);
+RIC_API void ric_orbit_clear(ric_orbit *orbit);
+
+/** Workspace of the solvers and of everything that follows an orbit in time. Grows to what a problem needs; solving
+ * again with the same numbers of particles, ends and impacts allocates nothing. Not to be shared between threads. */
+typedef struct ric_orbit_solver ric_orbit_solver;
+
+/** @param options  copied, NULL for the defaults; checked here */
+RIC_API ric_status ric_orbit_solver_create(const ric_orbit_options *options, ric_orbit_solver **solver,
+                                           ric_error *error);
+RIC_API void ric_orbit_solver_destroy(ric_orbit_solver **solver);
+
+/** Bytes that solver and orbit take for a chain and a number of impacts, on the unit cell if the pattern has one. */
+RIC_API double ric_orbit_bytes(const ric_chain *chain, const ric_pattern *pattern, ric_orbit_method method);
+
+/** The orbit of a pattern at a period.
+ *  @param orbit  initialised for the chain's particles and the pattern's impacts
+ *  @returns RIC_EINVAL for bad arguments, among them an impacting particle without a floor and a period <= 0;
+ *           RIC_ELIMIT for the dense method beyond RIC_DENSE_PARTICLES; RIC_ESTOPPED. Everything else is an outcome.
+ *  Source: [JAP] (7)-(11). */
+RIC_API ric_status ric_orbit_solve(ric_orbit_solver *solver, const ric_chain *chain, const ric_pattern *pattern,
+                                   double period, ric_orbit *orbit, ric_error *error);
+
+/** States of an orbit at given times (any, folded into the period; at an impact the state after it).
+ *  @param times  [count], unordered
+ *  @param q, v  [count][n], row-major; v may be NULL
+ *  @returns RIC_EINVAL for an orbit without a state (singular, failed) or a time that is not finite. */
+RIC_API ric_status ric_orbit_states(ric_orbit_solver *solver, const ric_chain *chain, const ric_orbit *orbit,
+                                    const double *times, size_t count, double *q, double *v, ric_error *error);
+
+/** Parameters in (low, high) at which the contact matrix of a pattern, on its unit cell, is singular; increasing.
+ *
+ *  Between two resonances every eigenvalue of the contact matrix decreases along gamma and along the period, so the
+ *  number of negative eigenvalues counts the zeros of the determinant in between: none is missed unless it lies within
+ *  1e-12 of the range from a resonance.
+ *  @param points  [capacity]; @param count  set to their number, also beyond the capacity
+ *  @returns RIC_EINVAL as ric_chain_resonances; RIC_ELIMIT when there are more than 10^5 resonances in the range. */
+RIC_API ric_status ric_orbit_singular_points(ric_orbit_solver *solver, const ric_chain *chain,
+                                             const ric_pattern *pattern, ric_along along, double period, double low,
+                                             double high, double *points, size_t capacity, size_t *count,
+                                             ric_error *error);
+
+#endif

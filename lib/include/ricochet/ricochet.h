@@ -1,0 +1,19 @@
+/* Ricochet: periodic motions, grazing bifurcations and parameter sweeps of impact oscillators.
+ *
+ * Source keys in the comments: [JAP] periodic motions of coupled impact oscillators, [VID] nonlinear modes of
+ * vibro-impact Duffing oscillators, [FN97] grazing bifurcations in many-degree-of-freedom impact oscillators; full
+ * references in docs/theory.md. Numbers in round brackets are equations there. */
+#ifndef RICOCHET_H
+#define RICOCHET_H
+
+#include "chain.h"
+#include "lattice_flow.h"
+#include "orbit.h"
+#include "pattern.h"
+#include "polynomial.h"
+#include "resonance.h"
+#include "segment.h"
+#include "status.h"
+#include "ricochet/version.h"
+
+#endif

@@ -1,0 +1,33 @@
+/* A segment of motion: one polynomial per coordinate on a time interval.
+ *
+ * Every flow hands out segments, and everything that looks for contacts, minima or states looks at segments. With
+ * x = (t - start) / length in [0, 1], coordinate i of the segment is q_i(t) = sum_j coef[j * stride + i] x^j. A segment
+ * may cover a stretch of a long chain: `first` is the particle of its coordinate 0. A negative length runs back in
+ * time. */
+#ifndef RICOCHET_SEGMENT_H
+#define RICOCHET_SEGMENT_H
+
+#include <stddef.h>
+
+#include "polynomial.h"
+
+typedef struct ric_segment {
+  size_t first;       /* particle of coordinate 0 */
+  size_t coordinates; /* number of coordinates */
+  size_t stride;      /* >= coordinates */
+  int degree;         /* <= RIC_POLY_DEGREE */
+  double start;       /* time at x = 0 */
+  double length;      /* time from x = 0 to x = 1, not 0 */
+  const double *coef; /* [degree + 1][stride]. Borrowed from the flow, valid until its next step */
+} ric_segment;
+
+/** Positions q and velocities v [coordinates] at x in [0, 1]; v may be NULL. */
+RIC_API void ric_segment_state(const ric_segment *segment, double x, double *q, double *v);
+
+/** Gap of a coordinate over a floor, q_i - b, as a polynomial c [degree + 1]. */
+RIC_API void ric_segment_gap(const ric_segment *segment, size_t coordinate, double floor, double *c);
+
+/** Lower bounds [coordinates] of every coordinate over the segment, from the coefficients; cheap. */
+RIC_API void ric_segment_lower_bounds(const ric_segment *segment, double *lower);
+
+#endif

@@ -1,0 +1,65 @@
+/* Status codes, the error object and the poll callback.
+ *
+ * A function that can fail returns a ric_status and takes a `ric_error *` as its last parameter, which may be NULL. The
+ * code is what a caller branches on; the sentence in the error object carries the value received and what is allowed.
+ * The library never prints, exits or keeps a global. An outcome is not an error: an orbit that is inadmissible or
+ * singular is a result with a named reason (orbit.h). */
+#ifndef RICOCHET_STATUS_H
+#define RICOCHET_STATUS_H
+
+#include <stddef.h>
+
+#include "export.h"
+
+#define RIC_STATUS_LIST(X)                                                                                             \
+  X(RIC_OK, "done")                                                                                                    \
+  X(RIC_EINVAL, "invalid argument")                                                                                    \
+  X(RIC_ENOMEM, "out of memory")                                                                                       \
+  X(RIC_ELIMIT, "a size is beyond a limit of the method")                                                              \
+  X(RIC_ENUMERIC, "a numerical kernel failed")                                                                         \
+  X(RIC_ESTOPPED, "stopped by the poll callback")
+
+typedef enum ric_status {
+#define X(name, text) name,
+  RIC_STATUS_LIST(X)
+#undef X
+} ric_status;
+
+/** One sentence for a code, for example "out of memory". Never NULL. */
+RIC_API const char *ric_status_text(ric_status status);
+
+/** The caller's error object: what went wrong, with the value received. */
+typedef struct ric_error {
+  ric_status status;
+  char message[256];
+} ric_error;
+
+/** Fills `error` (which may be NULL) and returns `status`: `return ric_fail(error, RIC_EINVAL, "gamma = %g, ...", g)`.
+ */
+RIC_API ric_status ric_fail(ric_error *error, ric_status status, const char *format, ...)
+#if defined(__GNUC__) || defined(__clang__)
+    __attribute__((format(printf, 3, 4)))
+#endif
+    ;
+
+/** Returns the status of a failed call to the caller; for functions that own nothing. */
+#define RIC_TRY(call)                                                                                                  \
+  do {                                                                                                                 \
+    ric_status ric_try_status = (call);                                                                                \
+    if (ric_try_status != RIC_OK)                                                                                      \
+      return ric_try_status;                                                                                           \
+  } while (0)
+
+/** Called at least once per flow step or matrix factorisation of a long computation, so that the caller can look at
+ *  signals, time limits and messages. Non-zero stops the computation with RIC_ESTOPPED. */
+typedef struct ric_poll {
+  int (*call)(void *user); /* NULL: never asked */
+  void *user;
+} ric_poll;
+
+/** Asks the poll callback. */
+static inline int ric_poll_stops(ric_poll poll) {
+  return poll.call != NULL && poll.call(poll.user) != 0;
+}
+
+#endif

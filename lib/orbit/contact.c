@@ -1,0 +1,207 @@
+#include "contact.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include <gsl/gsl_eigen.h>
+#include <gsl/gsl_linalg.h>
+#include <gsl/gsl_sort_vector.h>
+
+#include "model/image_ring.h"
+
+static const double pi = 3.14159265358979323846;
+
+void contact_system_clear(contact_system *c) {
+  free(c->store);
+  free(c->permutation);
+  *c = (contact_system){0};
+}
+
+/* Room for m impacts and all border modes. */
+static ric_status reserve(contact_system *c, size_t m, ric_error *error) {
+  size_t size = m + BORDER_MODES;
+  if (size <= c->capacity)
+    return RIC_OK;
+  contact_system_clear(c);
+  c->store = malloc((size * size + 7 * size) * sizeof *c->store);
+  c->permutation = malloc(size * sizeof *c->permutation);
+  if (!c->store || !c->permutation) {
+    contact_system_clear(c);
+    return ric_fail(error, RIC_ENOMEM, "no memory for the contact matrix of %zu impacts", m);
+  }
+  c->capacity = size;
+  c->matrix = c->store;
+  c->rhs = c->store + size * size;
+  c->solution = c->rhs + size;
+  c->tau = c->solution + size;
+  c->norm = c->tau + size;
+  c->work = c->norm + size; /* [3 size] */
+  return RIC_OK;
+}
+
+/* Displacement u_ks of a mode at a contact, as the contact equations see it. */
+static double at_contact(const unit_cell *cell, const border_mode *b, const contact *k) {
+  double shape = ric_chain_mode_shape(&cell->chain, b->mode, k->site);
+  return k->role == RIC_ROLE_HALF && b->harmonic % 2 == 1 ? -shape : shape;
+}
+
+static void list_border(contact_system *c, const unit_cell *cell, const response *r, double resonance_tol) {
+  c->border_count = c->exact = 0;
+  for (int exact = 1; exact >= 0; exact--) /* exact ones first */
+    for (size_t i = 0; i < r->near_count; i++) {
+      const near_wave *w = &r->near[i];
+      if ((fabs(w->distance) <= pi * resonance_tol) != exact)
+        continue;
+      size_t modes[2], count = response_modes(&cell->chain, w->wave, modes);
+      for (size_t k = 0; k < count; k++)
+        c->border[c->border_count++] = (border_mode){.mode = modes[k],
+                                                     .harmonic = w->harmonic,
+                                                     .stiffness = exact ? 0 : 2 * w->omega * sin(w->distance),
+                                                     .exact = exact};
+    }
+  while (c->exact < c->border_count && c->border[c->exact].exact)
+    c->exact++;
+}
+
+ric_status contact_visible(const unit_cell *cell, const border_mode *modes, size_t count, double *rotation,
+                           size_t *visible, ric_error *error) {
+  double gram[BORDER_MODES * BORDER_MODES], vectors[BORDER_MODES * BORDER_MODES], values[BORDER_MODES];
+  for (size_t a = 0; a < count; a++)
+    for (size_t b = 0; b < count; b++) {
+      gram[a * count + b] = 0;
+      for (size_t k = 0; k < cell->impacts; k++)
+        gram[a * count + b] +=
+            at_contact(cell, &modes[a], &cell->contacts[k]) * at_contact(cell, &modes[b], &cell->contacts[k]);
+    }
+  *visible = 0;
+  if (count == 0)
+    return RIC_OK;
+  gsl_eigen_symmv_workspace *w = gsl_eigen_symmv_alloc(count);
+  if (!w)
+    return ric_fail(error, RIC_ENOMEM, "no memory for the Gram matrix of %zu resonant modes", count);
+  gsl_matrix_view g = gsl_matrix_view_array(gram, count, count), v = gsl_matrix_view_array(vectors, count, count);
+  gsl_vector_view e = gsl_vector_view_array(values, count);
+  int code = gsl_eigen_symmv(&g.matrix, &e.vector, &v.matrix, w);
+  code = code ? code : gsl_eigen_symmv_sort(&e.vector, &v.matrix, GSL_EIGEN_SORT_VAL_DESC);
+  gsl_eigen_symmv_free(w);
+  if (code)
+    return ric_fail(error, RIC_ENUMERIC, "eigenvalues of a %zu x %zu Gram matrix: %s", count, count,
+                    gsl_strerror(code));
+  /* A mode of unit length has squares of order 1/n at the contacts; rounding leaves 1e-16 of that. */
+  double least = 1e-13 / (double)cell->chain.particles;
+  while (*visible < count && values[*visible] > least)
+    (*visible)++;
+  for (size_t i = 0; rotation && i < count * count; i++)
+    rotation[i] = vectors[i];
+  return RIC_OK;
+}
+
+static double entry(const unit_cell *cell, const response *r, const contact *k, const contact *l) {
+  return image_ring_entry(&cell->chain, k->role == l->role ? r->start_kernel : r->half_kernel, k->site, l->site);
+}
+
+/* Columns and rows of the border modes; exact ones through the rotation that keeps their visible combinations. */
+static void border(const contact_system *c, const unit_cell *cell, const double *rotation, size_t size) {
+  size_t m = cell->impacts, hidden = c->exact - c->seen;
+  for (size_t s = 0; s < c->border_count; s++) {
+    if (s >= c->seen && s < c->exact)
+      continue;
+    size_t column = m + (s < c->exact ? s : s - hidden);
+    for (size_t k = 0; k < m; k++) {
+      double u = 0;
+      if (s < c->exact)
+        for (size_t a = 0; a < c->exact; a++)
+          u += rotation[a * c->exact + s] * at_contact(cell, &c->border[a], &cell->contacts[k]);
+      else
+        u = at_contact(cell, &c->border[s], &cell->contacts[k]);
+      c->matrix[k * size + column] = c->matrix[column * size + k] = u;
+    }
+    c->matrix[column * size + column] = -c->border[s].stiffness;
+  }
+}
+
+/* The symmetric matrix [size][size] and the right-hand side. */
+static void assemble(contact_system *c, const unit_cell *cell, const response *r, const double *rotation, size_t size) {
+  for (size_t i = 0; i < size * size; i++)
+    c->matrix[i] = 0;
+  for (size_t i = 0; i < size; i++)
+    c->rhs[i] = i < cell->impacts ? ric_chain_floor(&cell->chain, cell->contacts[i].site) : 0;
+  for (size_t k = 0; k < cell->impacts; k++)
+    for (size_t l = 0; l <= k; l++) {
+      double g = entry(cell, r, &cell->contacts[k], &cell->contacts[l]);
+      c->matrix[k * size + l] = c->matrix[l * size + k] = g;
+    }
+  border(c, cell, rotation, size);
+}
+
+/* QR with column pivoting, which also estimates the inverse's norm: condition = scale of the free responses times it.
+ */
+static ric_status factor_and_solve(contact_system *c, size_t size, double scale, ric_error *error) {
+  gsl_matrix_view a = gsl_matrix_view_array(c->matrix, size, size);
+  gsl_vector_view tau = gsl_vector_view_array(c->tau, size), norm = gsl_vector_view_array(c->norm, size);
+  gsl_vector_view x = gsl_vector_view_array(c->solution, size), b = gsl_vector_view_array(c->rhs, size);
+  gsl_vector_view work = gsl_vector_view_array(c->work, 3 * size);
+  gsl_permutation p = {.size = size, .data = c->permutation};
+  int sign;
+  double rcond = 0, norm1 = 0;
+  int code = gsl_linalg_QRPT_decomp(&a.matrix, &tau.vector, &p, &sign, &norm.vector);
+  for (size_t j = 0; j < size; j++) {
+    double sum = 0;
+    for (size_t i = 0; i <= j; i++)
+      sum += fabs(c->matrix[i * size + j]);
+    norm1 = fmax(norm1, sum);
+  }
+  double last = c->matrix[size * size - 1];
+  if (!code && last != 0)
+    code = gsl_linalg_QRPT_rcond(&a.matrix, &rcond, &work.vector);
+  c->condition = rcond > 0 ? scale / (rcond * norm1) : INFINITY;
+  if (!code && rcond > 0)
+    code = gsl_linalg_QRPT_solve(&a.matrix, &tau.vector, &p, &b.vector, &x.vector);
+  return code ? ric_fail(error, RIC_ENUMERIC, "contact matrix of size %zu: %s", size, gsl_strerror(code)) : RIC_OK;
+}
+
+/* Amplitudes of the border modes from the tail of the solution. */
+static void unpack_amplitudes(contact_system *c, const double *rotation, size_t m) {
+  for (size_t s = 0; s < c->border_count; s++) {
+    c->amplitude[s] = 0;
+    if (s >= c->exact)
+      c->amplitude[s] = c->solution[m + s - (c->exact - c->seen)];
+    for (size_t a = 0; s < c->exact && a < c->seen; a++)
+      c->amplitude[s] += rotation[s * c->exact + a] * c->solution[m + a];
+  }
+}
+
+ric_status contact_solve(contact_system *c, const unit_cell *cell, const response *r, double resonance_tol, double *p,
+                         ric_error *error) {
+  double rotation[BORDER_MODES * BORDER_MODES];
+  size_t m = cell->impacts;
+  RIC_TRY(reserve(c, m, error));
+  list_border(c, cell, r, resonance_tol);
+  RIC_TRY(contact_visible(cell, c->border, c->exact, rotation, &c->seen, error));
+  size_t size = m + c->border_count - (c->exact - c->seen);
+  assemble(c, cell, r, rotation, size);
+  RIC_TRY(factor_and_solve(c, size, r->scale, error));
+  unpack_amplitudes(c, rotation, m);
+  for (size_t k = 0; k < m; k++)
+    p[k] = c->solution[k];
+  return RIC_OK;
+}
+
+ric_status contact_eigenvalues(contact_system *c, const unit_cell *cell, const response *r, double *eigenvalues,
+                               ric_error *error) {
+  size_t m = cell->impacts;
+  RIC_TRY(reserve(c, m, error));
+  c->border_count = c->exact = c->seen = 0;
+  assemble(c, cell, r, NULL, m);
+  gsl_eigen_symm_workspace *w = gsl_eigen_symm_alloc(m);
+  if (!w)
+    return ric_fail(error, RIC_ENOMEM, "no memory for the eigenvalues of %zu impacts", m);
+  gsl_matrix_view a = gsl_matrix_view_array(c->matrix, m, m);
+  gsl_vector_view e = gsl_vector_view_array(eigenvalues, m);
+  int code = gsl_eigen_symm(&a.matrix, &e.vector, w);
+  gsl_eigen_symm_free(w);
+  if (code)
+    return ric_fail(error, RIC_ENUMERIC, "eigenvalues of the contact matrix: %s", gsl_strerror(code));
+  gsl_sort_vector(&e.vector);
+  return RIC_OK;
+}

@@ -1,0 +1,59 @@
+/* The contact equations of a pattern on its cell: internal to the library.
+ *
+ * Unknowns are the impulses p_k > 0 and the amplitudes a_s of the modes near resonance (response.h):
+ *
+ *   sum_l G_kl(t_k - t_l) p_l + sum_s u_ks a_s = b_k,     sum_k u_ks p_k - d_s a_s = 0,
+ *
+ * with u_ks = phi_s(k), times (-1)^l for impacts at T/2, and d_s = 2 omega sin(distance), which is 0 at resonance. The
+ * matrix is symmetric. A combination of exactly resonant modes that vanishes at every contact has no equation: its
+ * amplitude is free, and is left out (0). */
+#ifndef RICOCHET_CONTACT_H
+#define RICOCHET_CONTACT_H
+
+#include <stddef.h>
+
+#include "response.h"
+#include "unit_cell.h"
+
+/** A mode that is close to resonance or at it. */
+typedef struct border_mode {
+  size_t mode;
+  unsigned harmonic;
+  double stiffness; /* d_s; exactly 0 at resonance */
+  int exact;        /* within resonance_tol */
+} border_mode;
+
+enum { BORDER_MODES = 2 * RESPONSE_NEAR };
+
+typedef struct contact_system {
+  size_t capacity; /* largest m + BORDER_MODES so far */
+  double *store;   /* every array below */
+  double *matrix;  /* [size][size], row-major */
+  double *rhs, *solution, *tau, *norm, *work;
+  size_t *permutation;
+  border_mode border[BORDER_MODES];
+  size_t border_count;
+  double amplitude[BORDER_MODES]; /* a_s of the solution */
+  size_t exact;                   /* border modes at resonance */
+  size_t seen;                    /* dimension of their span at the contacts; below `exact` some amplitude is free */
+  double condition;
+} contact_system;
+
+void contact_system_clear(contact_system *c);
+
+/** Modes among the first `count` resonant ones whose combinations the contacts see: the rank of [contacts][modes], from
+ *  its Gram matrix. @param rotation  [count][count], columns are orthonormal combinations, seen ones first; may be NULL
+ *  @param visible  set to the rank */
+ric_status contact_visible(const unit_cell *cell, const border_mode *modes, size_t count, double *rotation,
+                           size_t *visible, ric_error *error);
+
+/** Assembles and solves for the impulses p [m]. Needs the kernels of the responses.
+ *  @param resonance_tol  on |omega T / (2 pi) - l| */
+ric_status contact_solve(contact_system *c, const unit_cell *cell, const response *r, double resonance_tol, double *p,
+                         ric_error *error);
+
+/** Smallest-to-largest eigenvalues [m] of the contact matrix, without any mode set apart. */
+ric_status contact_eigenvalues(contact_system *c, const unit_cell *cell, const response *r, double *eigenvalues,
+                               ric_error *error);
+
+#endif

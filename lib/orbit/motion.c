@@ -1,0 +1,104 @@
+#include "motion.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+ric_status motion_prepare(motion *m, size_t particles, ric_error *error) {
+  if (!m->flow)
+    RIC_TRY(ric_lattice_flow_create(&m->flow, error));
+  if (particles <= m->capacity)
+    return RIC_OK;
+  free(m->store);
+  m->capacity = 0;
+  m->store = malloc(6 * particles * sizeof *m->store);
+  if (!m->store)
+    return ric_fail(error, RIC_ENOMEM, "no memory for the motion of %zu particles", particles);
+  m->capacity = particles;
+  return RIC_OK;
+}
+
+void motion_clear(motion *m) {
+  ric_lattice_flow_destroy(&m->flow);
+  free(m->store);
+  *m = (motion){0};
+}
+
+/* One of the two runs: its steps, and the states it moves between. */
+typedef struct run {
+  bool from_half;
+  double start, length;
+  size_t steps;
+  const double *q, *v;   /* state at the start */
+  double *q_end, *v_end; /* state at T/4 */
+  double *q_spare, *v_spare;
+} run;
+
+/* One step of all blocks from (q, v) to (q_next, v_next). */
+static void step(motion *m, const ric_chain *chain, const run *r, size_t index, const double *q, const double *v,
+                 double *q_next, double *v_next, motion_visit visit, void *user) {
+  double start = r->start + (double)index * r->length;
+  for (size_t first = 0; first < chain->particles; first += RIC_LATTICE_BLOCK) {
+    size_t rest = chain->particles - first, count = rest < RIC_LATTICE_BLOCK ? rest : RIC_LATTICE_BLOCK;
+    motion_piece piece = {.from_half = r->from_half, .at_contact = index == 0};
+    piece.segment = ric_lattice_flow_segment(m->flow, chain, q, v, start, r->length, first, count);
+    if (visit)
+      visit(&piece, user);
+    ric_segment_state(&piece.segment, 1, q_next + first, v_next + first);
+  }
+}
+
+static ric_status advance(motion *m, const ric_chain *chain, const run *r, motion_visit visit, void *user,
+                          ric_poll poll, ric_error *error) {
+  const double *q = r->q, *v = r->v;
+  for (size_t i = 0; i < r->steps; i++) {
+    if (ric_poll_stops(poll))
+      return ric_fail(error, RIC_ESTOPPED, "stopped at t = %g", r->start + (double)i * r->length);
+    bool to_end = (r->steps - 1 - i) % 2 == 0; /* the last step lands in q_end */
+    double *q_next = to_end ? r->q_end : r->q_spare, *v_next = to_end ? r->v_end : r->v_spare;
+    step(m, chain, r, i, q, v, q_next, v_next, visit, user);
+    q = q_next;
+    v = v_next;
+  }
+  return RIC_OK;
+}
+
+static double largest_difference(const double *a, const double *b, size_t n) {
+  double largest = 0;
+  for (size_t i = 0; i < n; i++) {
+    double d = fabs(a[i] - b[i]);
+    largest = d <= largest ? largest : d; /* keeps a NaN */
+  }
+  return largest;
+}
+
+ric_status motion_run(motion *m, const ric_chain *chain, double period, const boundary_state *state, motion_visit visit,
+                      void *user, double *mismatch, ric_poll poll, ric_error *error) {
+  size_t n = chain->particles;
+  double quarter = period / 4, *store = m->store;
+  size_t steps = (size_t)ceil(quarter / ric_lattice_step(chain));
+  run forward = {.start = 0,
+                 .length = quarter / (double)steps,
+                 .steps = steps,
+                 .q = state->q,
+                 .v = state->v,
+                 .q_end = store,
+                 .v_end = store + n,
+                 .q_spare = store + 2 * n,
+                 .v_spare = store + 3 * n};
+  run backward = forward;
+  backward.from_half = true;
+  backward.start = period / 2;
+  backward.length = -forward.length;
+  backward.q = state->q_half;
+  backward.v = state->v_half;
+  backward.q_end = store + 4 * n;
+  backward.v_end = store + 5 * n;
+  RIC_TRY(advance(m, chain, &forward, visit, user, poll, error));
+  RIC_TRY(advance(m, chain, &backward, visit, user, poll, error));
+  if (mismatch) {
+    double in_q = largest_difference(forward.q_end, backward.q_end, n);
+    double in_v = largest_difference(forward.v_end, backward.v_end, n);
+    *mismatch = isnan(in_q) || isnan(in_v) ? NAN : fmax(in_q, in_v);
+  }
+  return RIC_OK;
+}

@@ -1,0 +1,39 @@
+/* The motion of an orbit over its half period, as a stream of segments: internal to the library.
+ *
+ * The flow runs from t = 0+ forward to T/4 and from t = (T/2)- back to T/4. An orbit is even about both ends, so this
+ * is the whole of it; both contacts lie at the start of a run, where the segment begins exactly there; and what the two
+ * runs differ by at T/4 measures how well the state satisfies the equations of motion. */
+#ifndef RICOCHET_MOTION_H
+#define RICOCHET_MOTION_H
+
+#include <stdbool.h>
+
+#include "boundary_state.h"
+#include "ricochet/lattice_flow.h"
+
+/** One block of particles over one step. */
+typedef struct motion_piece {
+  ric_segment segment; /* in the orbit's time; length < 0 in the run from T/2 */
+  bool from_half;      /* belongs to that run */
+  bool at_contact;     /* first step of its run: starts at the impacts */
+} motion_piece;
+
+/** Sees every piece; in a run in order of its steps, in a step in order of particles. */
+typedef void (*motion_visit)(const motion_piece *piece, void *user);
+
+typedef struct motion {
+  ric_lattice_flow *flow;
+  size_t capacity;
+  double *store; /* [6][capacity]: two states to step between, one to compare with */
+} motion;
+
+ric_status motion_prepare(motion *m, size_t particles, ric_error *error);
+void motion_clear(motion *m);
+
+/** Streams the pieces. @param visit  NULL to look at the mismatch only
+ *  @param mismatch  set to the largest difference of the two runs in positions and velocities at T/4; may be NULL
+ *  @returns RIC_ESTOPPED when the poll callback says so. */
+ric_status motion_run(motion *m, const ric_chain *chain, double period, const boundary_state *state, motion_visit visit,
+                      void *user, double *mismatch, ric_poll poll, ric_error *error);
+
+#endif

@@ -1,0 +1,74 @@
+#include "resonant.h"
+
+#include <math.h>
+
+#include "model/image_ring.h"
+
+static const double pi = 3.14159265358979323846;
+
+/* Wave index (a real number) at which the image ring has a frequency, clamped to the band. */
+static double wave_index(const ric_chain *chain, double frequency) {
+  double s2 = (frequency * frequency - 1) / (4 * image_ring_gamma(chain));
+  return asin(sqrt(fmin(fmax(s2, 0), 1))) / pi * (double)image_ring_sites(chain);
+}
+
+static size_t add_wave(const ric_chain *chain, size_t wave, unsigned harmonic, border_mode *modes, size_t count) {
+  size_t pair[2], members = response_modes(chain, wave, pair);
+  for (size_t i = 0; i < members && count < BORDER_MODES; i++)
+    modes[count++] = (border_mode){.mode = pair[i], .harmonic = harmonic, .exact = 1};
+  return count;
+}
+
+size_t resonant_modes(const ric_chain *chain, double period, double tolerance, border_mode *modes) {
+  double turns = period / (2 * pi), fastest = ric_chain_frequency_max(chain) * turns;
+  double first_wave = chain->ends == RIC_ENDS_FIXED ? 1 : 0;
+  double last_wave =
+      chain->ends == RIC_ENDS_PERIODIC ? (double)(chain->particles / 2) : (double)(chain->particles - 1) + first_wave;
+  size_t count = 0;
+  for (double l = fmax(1, ceil(turns - tolerance)); l <= fastest + tolerance; l++) {
+    double low = floor(wave_index(chain, (l - tolerance) / turns)) - 1;
+    double high = ceil(wave_index(chain, (l + tolerance) / turns)) + 1;
+    if (image_ring_gamma(chain) == 0) {
+      low = first_wave;
+      high = last_wave;
+    }
+    for (double j = fmax(low, first_wave); j <= fmin(high, last_wave) && count < BORDER_MODES; j++) {
+      double p = 2 * pi * j / (double)image_ring_sites(chain);
+      if (fabs(ric_dispersion(image_ring_gamma(chain), p) * turns - l) <= tolerance)
+        count = add_wave(chain, (size_t)j, (unsigned)l, modes, count);
+    }
+  }
+  return count;
+}
+
+ric_status resonant_free(const unit_cell *whole, const border_mode *modes, size_t count, bool *free_amplitude,
+                         size_t *hidden, ric_error *error) {
+  size_t visible, least_rank = 1;
+  *free_amplitude = false;
+  *hidden = 0;
+  if (count == 0)
+    return RIC_OK;
+  RIC_TRY(contact_visible(whole, modes, count, NULL, &visible, error));
+  *free_amplitude = visible < count;
+  for (size_t i = 0; *free_amplitude && least_rank == 1 && i < count; i++) {
+    RIC_TRY(contact_visible(whole, &modes[i], 1, NULL, &least_rank, error));
+    if (least_rank == 0)
+      *hidden = i;
+  }
+  return RIC_OK;
+}
+
+size_t resonant_dominant(const ric_chain *chain, const border_mode *modes, size_t count, const double *q) {
+  size_t dominant = 0;
+  double largest = -1;
+  for (size_t a = 0; a < count; a++) {
+    double amplitude = 0;
+    for (size_t i = 0; i < chain->particles; i++)
+      amplitude += q[i] * ric_chain_mode_shape(chain, modes[a].mode, i);
+    if (fabs(amplitude) > largest) {
+      largest = fabs(amplitude);
+      dominant = a;
+    }
+  }
+  return dominant;
+}

@@ -1,0 +1,12 @@
+#include "ricochet/version.h"
+
+#include <fftw3.h>
+#include <gsl/gsl_version.h>
+
+const char *ric_version(void) {
+  return RIC_VERSION;
+}
+
+const char *ric_libraries(void) {
+  return "GSL " GSL_VERSION ", FFTW " RIC_FFTW_VERSION;
+}
