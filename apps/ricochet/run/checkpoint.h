@@ -1,13 +1,15 @@
 /* The checkpoint of a run: a folder with one file per rank, to which the rank appends its finished chunks.
  *
- * A record is (magic, first task, number of tasks, bytes, digest) and the rows; it is never rewritten. Reading goes to
+ * A record is (magic, first task, number of tasks, bytes, digests) and the rows; it is never rewritten. Reading goes to
  * the first record of a file that does not verify. A run that resumes opens new files beside the old ones, so that a
  * torn tail is never written over. The rows of finished tasks are read back from here when the result is assembled:
- * no rank holds more than it is working on. */
+ * no rank holds more than it is working on. What is kept in memory is 32 bytes per record.
+ *
+ * The ranks share nothing but the files. They number the missing tasks alike because they open the checkpoint before
+ * any of them appends (a barrier between), and they read each other's rows after a barrier and a rescan. */
 #ifndef RICOCHET_APP_CHECKPOINT_H
 #define RICOCHET_APP_CHECKPOINT_H
 
-#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -19,42 +21,53 @@ typedef struct checkpoint checkpoint;
 typedef struct checkpoint_identity {
   uint64_t digest; /* of the study */
   uint64_t tasks;
-  uint64_t row_bytes;
-  char version[64]; /* of the program: rows of different versions are not mixed */
+  uint64_t row_bytes; /* >= 1 */
+  char version[64];   /* of the program: rows of different versions are not mixed */
 } checkpoint_identity;
 
-/** FNV-1a, 64 bits, continued from `seed` (0 to begin). */
+/** FNV-1a, 64 bits, continued from `seed` (0 to begin). Any single changed byte changes it. About 1 GB/s. */
 uint64_t digest_bytes(uint64_t seed, const void *bytes, size_t size);
 
-/** Opens the checkpoint in `folder` (which exists) and reads the records of every file there.
- *  @returns 0; EXIT_USAGE when the files belong to another study or version; EXIT_FILES when they cannot be read. */
+/** Opens the checkpoint in `folder` (which exists; copied) and reads the records of every file there, verifying all of
+ *  their bytes. A file without a whole header counts as empty.
+ *  @returns 0; EXIT_USAGE when the files belong to another study, version or shape; EXIT_FILES when they cannot be
+ * read; EXIT_RUN out of memory. *out is NULL unless 0. */
 int checkpoint_open(const char *folder, const checkpoint_identity *identity, checkpoint **out, message *why);
+/** Takes &c, sets it NULL, accepts NULL. Does not sync. */
 void checkpoint_close(checkpoint **c);
 
-/** Reads the records that appeared since (the files of the other ranks, after a barrier). */
+/** Reads the records that appeared since (those of this rank, and of the other ranks after a barrier), and numbers the
+ *  missing tasks anew. Only their headers are verified here: checkpoint_read verifies the rows, and each rank reads
+ * only its share of them. */
 int checkpoint_rescan(checkpoint *c, message *why);
 
-/** Number of distinct tasks found in records. */
+/** Number of distinct tasks found in records, as of the last scan. */
 uint64_t checkpoint_done(const checkpoint *c);
 
 /** The n-th missing task as of the last scan maps to a contiguous run: sets *task to its number and returns how many
  *  missing tasks follow one another from there (at least 1), 0 when n is past the last missing one. */
 uint64_t checkpoint_missing(const checkpoint *c, uint64_t n, uint64_t *task);
 
-/** Creates this rank's own file; `rank` only names it. */
+/** Creates this rank's own file; `rank` only names it. Once per checkpoint_open.
+ *  @returns 0 or EXIT_FILES. */
 int checkpoint_begin(checkpoint *c, int rank, message *why);
 
-/** Appends one finished chunk, rows [count][row_bytes]; on disk in the page cache when it returns. */
+/** Appends one finished chunk, rows [count][row_bytes]; in the page cache when it returns, safe from the death of this
+ *  process. After a failure (a full disk) the file ends with its last good record.
+ *  @returns 0 or EXIT_FILES. */
 int checkpoint_append(checkpoint *c, uint64_t first, uint64_t count, const void *rows, message *why);
 
-/** fdatasync of this rank's file and, the first time, of the folder. */
+/** fdatasync of this rank's file and, the first time, of the folder and its parent: safe from the death of the machine.
+ *  @returns 0 (also when this rank has no file) or EXIT_FILES. */
 int checkpoint_sync(checkpoint *c, message *why);
 
-/** Reads rows [first, first + count) from whichever records hold them, verifying digests.
+/** Reads rows [first, first + count) from whichever records hold them, verifying digests. Reading on in the record that
+ *  was verified last does not digest it again.
  *  @returns 0 or EXIT_FILES. */
 int checkpoint_read(checkpoint *c, uint64_t first, uint64_t count, void *rows, message *why);
 
-/** Deletes the checkpoint's own files (not the lock) and the folder if that leaves it empty. */
+/** Deletes the checkpoint's own files (not the lock) and the folder if that leaves it empty. A missing folder is fine.
+ *  @returns 0 or EXIT_FILES. */
 int checkpoint_remove(const char *folder, message *why);
 
 #endif

@@ -4,7 +4,11 @@
 
 #include <stdint.h>
 
-typedef enum progress_mode { PROGRESS_AUTO, PROGRESS_ALWAYS, PROGRESS_NEVER } progress_mode;
+typedef enum progress_mode {
+  PROGRESS_AUTO,   /* the bar if standard error, or that of mpirun, is a terminal, lines otherwise */
+  PROGRESS_ALWAYS, /* the bar also when standard error is no terminal */
+  PROGRESS_NEVER
+} progress_mode;
 
 typedef struct progress {
   int active, terminal;
@@ -12,10 +16,11 @@ typedef struct progress {
   double began, shown;     /* clock_seconds of the start and of the last output */
 } progress;
 
-/** `always` draws the bar even when standard error is no terminal. */
+/** Starts the clock that rates refer to; prints nothing yet. */
 void progress_begin(progress *p, progress_mode mode, uint64_t total, uint64_t resumed);
 /** Cheap when called often: prints at most 5 times a second on a terminal, every 30 s otherwise.
- *  Shows tasks done, rate and time left. */
+ *  Shows tasks done, rate and time left.
+ *  @param done  tasks finished so far, the resumed ones included; these do not count in the rate */
 void progress_show(progress *p, uint64_t done);
 /** Last output: the bar at its final state and a line break. */
 void progress_end(progress *p, uint64_t done);

@@ -2,7 +2,11 @@
  *
  * The counter lives on rank 0 in a one-sided window; a rank takes its next chunk by fetch-and-add, so uneven costs
  * balance themselves and no rank is lost to a master. Over TCP the counter moves only while its owner is inside MPI:
- * whoever computes for long calls scheduler_poll at least each millisecond. */
+ * whoever computes for long calls scheduler_poll at least each millisecond.
+ *
+ * The only operations on the counter are additions and plain looks (MPI promises that concurrent operations are atomic
+ * only when they are of one kind). A stop is therefore an addition too: of a mark larger than all the items that can
+ * ever be asked for. */
 #ifndef RICOCHET_APP_SCHEDULER_H
 #define RICOCHET_APP_SCHEDULER_H
 
@@ -14,28 +18,38 @@
 
 typedef struct scheduler scheduler;
 
-/** Collective. @param items number of work items, numbered from 0. */
+/** Collective.
+ *  @param comm   duplicated; may be freed afterwards
+ *  @param items  number of work items, numbered from 0; at most 2^63 / (ranks + 1) / (ranks + 2)
+ *  @returns 0, or EXIT_RUN when MPI fails or the items are too many; *out is NULL then. */
 int scheduler_create(MPI_Comm comm, uint64_t items, scheduler **out, message *why);
-/** Collective. */
+/** Collective. Takes &s, sets it NULL, accepts NULL. */
 void scheduler_destroy(scheduler **s);
 
-/** Takes the next chunk: at most `want` >= 1 consecutive items.
- *  @returns their number, 0 when nothing is left or the run was stopped. */
+/** Takes the next chunk: at most `want` consecutive items (0 counts as 1).
+ *  @returns their number, 0 when nothing is left, the run was stopped or MPI failed (see scheduler_failure). */
 uint64_t scheduler_take(scheduler *s, uint64_t want, uint64_t *first);
 
-/** Size of the next chunk, from the seconds that the last one took: aims at chunks of 10 to 50 ms, and lets them shrink
- *  towards the end of the list so that the ranks finish together. */
+/** Size of the next chunk, from the size of the last one and the seconds it took (0, 0 for the first chunk): aims at
+ *  20 ms, grows by at most four times a step, and lets chunks shrink to 10 ms towards the end of the list so that the
+ *  ranks finish together. At least 1. */
 uint64_t scheduler_next_size(const scheduler *s, uint64_t last_size, double last_seconds);
 
-/** Lets MPI progress, at most every half millisecond (otherwise only a clock reading). Also notices, within 100 ms, that
- *  another rank stopped the run. @returns true when the run is stopped. */
+/** Lets MPI progress, at most every half millisecond (otherwise only a clock reading). Also notices, within 100 ms,
+ * that another rank stopped the run. @returns true when the run is stopped. */
 bool scheduler_poll(scheduler *s);
 
-/** Stops the run on every rank: later takes return 0. */
+/** Stops the run on every rank: later takes return 0. Further calls do nothing. */
 void scheduler_stop(scheduler *s);
+
+/** Looks at the counter now: after a barrier all ranks get the same answer. Not for inner loops (scheduler_poll is). */
 bool scheduler_stopped(scheduler *s);
 
-/** Items taken so far by all ranks, as of this rank's last look at the counter. */
+/** Items taken so far by all ranks, as of this rank's last look at the counter (100 ms old when it polls). */
 uint64_t scheduler_taken(const scheduler *s);
+
+/** Failure of MPI in any of the calls above that have no message of their own; the run counts as stopped then.
+ *  @returns 0 or EXIT_RUN. */
+int scheduler_failure(const scheduler *s, message *why);
 
 #endif

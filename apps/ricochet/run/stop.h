@@ -1,21 +1,32 @@
 /* Reasons to stop a run early: signals and the time limit.
  *
  * SIGUSR1 and --max-time ask for a checkpoint and exit code 75. SIGTERM and SIGINT mark the process stopped: it keeps
- * what it has written and leaves with the signal's own code. */
+ * what it has written and leaves with the signal's own code. A handler only sets a flag; the computation asks for it
+ * through its poll. */
 #ifndef RICOCHET_APP_STOP_H
 #define RICOCHET_APP_STOP_H
 
-typedef enum stop_reason { STOP_NONE, STOP_ASKED, STOP_TIME, STOP_SIGNAL } stop_reason;
+typedef enum stop_reason {
+  STOP_NONE,
+  STOP_ASKED, /* SIGUSR1 */
+  STOP_TIME,  /* the time limit has passed */
+  STOP_SIGNAL /* SIGTERM or SIGINT; outranks the others, as the process has about a second left */
+} stop_reason;
 
-/** Installs the handlers (SIGUSR1, SIGTERM, SIGINT; SIGXFSZ and SIGPIPE ignored) and starts the clock.
- *  @param max_seconds  time limit, INFINITY for none */
+/** Installs the handlers (SIGUSR1, SIGTERM, SIGINT; SIGXFSZ and SIGPIPE ignored), forgets earlier signals and starts
+ *  the clock. To be called before the first stop_asked.
+ *  @param max_seconds  time limit, INFINITY for none; NaN stops at once */
 void stop_watch(double max_seconds);
 
-/** Reason so far; reads the clock and the flags, 50 ns. */
+/** Reason so far; reads the flags and the clock, 50 ns. */
 stop_reason stop_asked(void);
 
 /** The signal behind STOP_SIGNAL, 0 when there was none. */
 int stop_signal(void);
+
+/** Leaves with the code of SIGTERM or SIGINT when one of them came; returns when none did. Not collective: mpirun ends
+ * the other ranks, and what this one has written stays. */
+void stop_leave_by_signal(void);
 
 /** Seconds on the monotonic clock. */
 double clock_seconds(void);

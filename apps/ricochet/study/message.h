@@ -19,7 +19,8 @@ typedef struct message {
   char text[1024];
 } message;
 
-/** Formats the sentence and returns `code`, so that a refusal is one statement: `return refuse(why, EXIT_USAGE, ...)`. */
+/** Formats the sentence and returns `code`, so that a refusal is one statement: `return refuse(why, EXIT_USAGE, ...)`.
+ */
 int refuse(message *why, int code, const char *format, ...) __attribute__((format(printf, 3, 4)));
 
 #endif

@@ -5,6 +5,7 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdio.h>
 
 /** Every key of a study, in the order of the reference. Row `key` of the table describes it. */
 typedef enum study_key {
@@ -54,16 +55,52 @@ typedef struct schema_entry {
   const char *doc;         /* one line for the reference */
 } schema_entry;
 
+/** The keys of one entry of `sweep`, described by rows of the same kind. */
+typedef enum sweep_key {
+  SWEEP_PARAMETER,
+  SWEEP_VALUES,
+  SWEEP_FROM,
+  SWEEP_TO,
+  SWEEP_POINTS,
+  SWEEP_SCALE,
+  SWEEP_KEY_COUNT
+} sweep_key;
+
+/** How a number meets the row of its key. */
+typedef enum schema_fit { FIT_OK, FIT_NOT_INTEGER, FIT_OUT_OF_RANGE } schema_fit;
+
 /** The row of a key; the table has KEY_COUNT rows. */
 const schema_entry *schema_row(study_key key);
+/** The row of a key of a sweep entry, its path "sweep.from". */
+const schema_entry *schema_sweep_row(sweep_key key);
 
 /** Key of a path, KEY_COUNT when there is none. */
 study_key schema_find(const char *path);
 
-/** Writes the known key nearest to `path` (edit distance) into `near`, or "" when none is near enough to suggest. */
-void schema_nearest(const char *path, char *near, size_t size);
+/** Whether keys of the table stand under this top-level name: `model`, `orbit`. */
+bool schema_is_section(const char *name);
+/** Whether a top-level name belongs to a later version: `start`, `time`, `iterate`. */
+bool schema_is_later_section(const char *name);
 
-/** What an entry allows, in words: "a number with 0 <= value", "one of periodic, fixed, free". */
+/** Writes the known key nearest to `path` into `near`, or "" when none is near enough to suggest. Nearness is the edit
+ *  distance, swapped neighbours counting once, of the whole paths or of their last names: `model.gama` finds
+ *  `model.gamma`, and so does `gamma`. Sections and the keys of sweep entries (`sweep.from`) are known too.
+ *  @param size  of `near`, at least 64 */
+void schema_nearest(const char *path, char *near, size_t size);
+/** The same among the keys that can be swept. */
+void schema_nearest_parameter(const char *path, char *near, size_t size);
+
+/** What an entry allows, in words: "a number from 0 to 1", "one of periodic, fixed, free". */
 void schema_allowed(const schema_entry *entry, char *text, size_t size);
+/** What one element of it allows: the same without the word "list". */
+void schema_allowed_item(const schema_entry *entry, char *text, size_t size);
+/** The names known in a section, "" for the top level: "type, particles, ends, ...". */
+void schema_names(const char *section, char *text, size_t size);
+
+/** Whether a number or integer is one that the entry allows; NaN is out of range. */
+schema_fit schema_check(const schema_entry *entry, double value);
+
+/** Prints the study-file reference in Markdown, from the table. */
+void schema_reference(FILE *out);
 
 #endif

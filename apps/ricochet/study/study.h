@@ -16,16 +16,17 @@
 enum {
   STUDY_MAX_BYTES = 8 << 20, /* size of a study file */
   STUDY_MAX_DEPTH = 32,      /* nesting of its nodes */
-  STUDY_MAX_SWEEPS = 8
+  STUDY_MAX_SWEEPS = 8,
+  STUDY_MAX_POINTS = 1 << 24 /* values of one sweep: every rank holds them */
 };
 
 typedef struct study study;
 
 /** One entry of `sweep`: a parameter and its values. */
 typedef struct study_sweep {
-  char name[96];        /* as written: "model.gamma", "model.floor[3]" */
+  char name[96]; /* "model.gamma", "model.floor[3]" */
   study_key key;
-  long item;            /* index of a list element, -1 for a scalar */
+  long item; /* index of a list element, -1 for a scalar */
   size_t points;
   const double *values; /* [points] */
 } study_sweep;
@@ -39,15 +40,20 @@ int study_read_file(const char *path, char **text, size_t *length, message *why)
  *  @param name  how messages call the text, usually the file's path
  *  @param sets  `--set` assignments "path=value", the value in YAML; applied to the tree before validation, so any key
  *               can be set, also `sweep[0].points`. Messages about them begin with `--set path=value:`
- *  @returns 0 or EXIT_USAGE. */
+ *  @param out   NULL after a refusal
+ *  @returns 0, EXIT_USAGE, or EXIT_RUN when out of memory. */
 int study_parse(const char *name, const char *text, size_t length, const char *const *sets, size_t n_sets, study **out,
                 message *why);
 void study_destroy(study **s);
 
+/** Kind of the study, a word of the schema: "orbits". */
+const char *study_kind(const study *s);
+
 /** How messages call this study (the `name` it was parsed under). */
 const char *study_name(const study *s);
 
-/** Line of a key in the file, 0 when the key was not given there (default, or `--set`). */
+/** Line of a key in the file, or of the sweep that supplies a key left out; 0 when neither stands there (default, or
+ *  `--set`). */
 size_t study_line(const study *s, study_key key);
 
 /** "FILE:LINE: model.gamma" of a key, or "--set model.gamma=3: model.gamma", or "FILE: model.gamma" for a default. */
@@ -65,7 +71,7 @@ const study_sweep *study_sweep_at(const study *s, size_t index);
 /** Number of grid points, the product over the sweeps; 1 without a sweep. Less than 2^40. */
 uint64_t study_tasks(const study *s);
 
-/** Value of sweep `index` at a task; the last sweep varies fastest. */
+/** Value of sweep `index` at a task below study_tasks; the last sweep varies fastest. */
 double study_sweep_value(const study *s, size_t index, uint64_t task);
 
 /* The values of one task: the study's values with the swept ones replaced. */
@@ -75,6 +81,7 @@ typedef struct study_values study_values;
 /** Borrows the study, which must outlive it. Starts at task 0. @returns NULL when out of memory. */
 study_values *study_values_create(const study *s);
 void study_values_destroy(study_values **v);
+/** Moves to a task, below study_tasks. Only swept values are rewritten, nothing is allocated. */
 void study_values_at(study_values *v, uint64_t task);
 
 /** Whether the key was given (in the file or by --set) or has a default. */

@@ -1,0 +1,25 @@
+/* The commands of the program. Each parses its own arguments (argv[0] is the command's name), prints its message and
+ * returns the exit code. */
+#ifndef RICOCHET_APP_COMMAND_H
+#define RICOCHET_APP_COMMAND_H
+
+#include "../study/message.h"
+
+int command_run(int argc, char **argv);
+int command_check(int argc, char **argv);
+int command_show(int argc, char **argv);
+int command_examples(int argc, char **argv);
+
+/** Prints "ricochet: MESSAGE" on standard error, or the bare message when it begins with a place; returns code. */
+int complain(int code, const message *why);
+
+/** Flushes standard output; a failed write is EXIT_FILES. */
+int finish_output(int code);
+
+/** What the program was built as: for --version and the result's attributes. */
+const char *build_version(void);
+const char *build_git_sha(void);
+const char *build_compiler(void);
+const char *build_libraries(void);
+
+#endif

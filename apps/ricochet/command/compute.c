@@ -1,0 +1,138 @@
+#include "compute.h"
+
+#include <stdlib.h>
+
+#include "../run/ranks.h"
+#include "../run/scheduler.h"
+
+/* One rank at work. */
+typedef struct rank {
+  const kind_plan *plan;
+  const kind *kind;
+  worker *worker;
+  checkpoint *checkpoint;
+  scheduler *scheduler;
+  unsigned char *rows; /* [capacity] of the run of tasks at hand */
+  uint64_t capacity, done;
+  progress *progress;
+  double sync_interval, synced;
+} rank;
+
+/* The library's poll: signals and time limits, messages of other ranks, progress. */
+static int poll_all(void *user) {
+  rank *r = user;
+  if (stop_asked() != STOP_NONE)
+    return 1;
+  progress_show(r->progress, r->progress->resumed + scheduler_taken(r->scheduler));
+  return scheduler_poll(r->scheduler);
+}
+
+static int grow(rank *r, uint64_t tasks, message *why) {
+  if (tasks <= r->capacity)
+    return 0;
+  unsigned char *more = realloc(r->rows, tasks * r->plan->rows.row_bytes);
+  if (!more)
+    return refuse(why, EXIT_RUN, "no memory for a chunk of %llu tasks", (unsigned long long)tasks);
+  r->rows = more;
+  r->capacity = tasks;
+  return 0;
+}
+
+/* Consecutive tasks, appended as one record; fewer when the run is stopped in between. */
+static int evaluate_run(rank *r, uint64_t first, uint64_t count, int *stopped, message *why) {
+  int code = grow(r, count, why);
+  uint64_t finished = 0;
+  while (!code && finished < count && !*stopped) {
+    unsigned char *row = r->rows + finished * r->plan->rows.row_bytes;
+    if (poll_all(r) || r->kind->evaluate(r->worker, &r->plan->rows, first + finished, row) != 0)
+      *stopped = 1;
+    else
+      finished++;
+  }
+  if (!code && finished > 0)
+    code = checkpoint_append(r->checkpoint, first, finished, r->rows, why);
+  r->done += finished;
+  return code;
+}
+
+/* A chunk of missing tasks: one or more runs of consecutive ones. */
+static int evaluate_chunk(rank *r, uint64_t first, uint64_t count, int *stopped, message *why) {
+  for (uint64_t n = 0; n < count && !*stopped;) {
+    uint64_t task, run = checkpoint_missing(r->checkpoint, first + n, &task);
+    run = run < count - n ? run : count - n;
+    int code = evaluate_run(r, task, run, stopped, why);
+    if (code)
+      return code;
+    n += run;
+  }
+  if (clock_seconds() - r->synced < r->sync_interval)
+    return 0;
+  r->synced = clock_seconds();
+  return checkpoint_sync(r->checkpoint, why);
+}
+
+/* Largest chunk whose rows stay below 64 MB. */
+static uint64_t largest_chunk(const kind_plan *plan) {
+  uint64_t most = (64u << 20) / plan->rows.row_bytes;
+  return most > 0 ? most : 1;
+}
+
+static int work(rank *r, message *why) {
+  uint64_t first, size = 0, most = largest_chunk(r->plan);
+  double seconds = 0;
+  int code = 0, stopped = 0;
+  while (!code && !stopped) {
+    uint64_t want = scheduler_next_size(r->scheduler, size, seconds);
+    size = scheduler_take(r->scheduler, want < most ? want : most, &first);
+    if (size == 0)
+      break;
+    double began = clock_seconds();
+    code = evaluate_chunk(r, first, size, &stopped, why);
+    seconds = clock_seconds() - began;
+  }
+  if (code || stopped)
+    scheduler_stop(r->scheduler); /* the others finish their chunk */
+  if (!code)
+    code = scheduler_failure(r->scheduler, why);
+  return code;
+}
+
+static int start(rank *r, const study *s, message *why) {
+  uint64_t tasks = study_tasks(s);
+  int code = r->kind->open(s, (ric_poll){.call = poll_all, .user = r}, &r->worker, why);
+  if (!code)
+    code = checkpoint_begin(r->checkpoint, ranks_rank(), why);
+  code = ranks_agree(code, why);
+  if (!code)
+    code =
+        ranks_agree(scheduler_create(MPI_COMM_WORLD, tasks - checkpoint_done(r->checkpoint), &r->scheduler, why), why);
+  return code;
+}
+
+int compute(const study *s, const kind *k, const kind_plan *plan, checkpoint *c, const run_options *o,
+            compute_result *result, message *why) {
+  progress p;
+  rank r = {.plan = plan, .kind = k, .checkpoint = c, .progress = &p, .sync_interval = o->checkpoint_seconds};
+  *result = (compute_result){.stopped = STOP_NONE};
+  progress_begin(&p, ranks_rank() == 0 ? o->progress : PROGRESS_NEVER, study_tasks(s), checkpoint_done(c));
+  int code = start(&r, s, why);
+  if (!code) {
+    ranks_barrier();
+    double began = r.synced = clock_seconds();
+    code = work(&r, why);
+    double ended = clock_seconds();
+    stop_leave_by_signal();
+    if (!code)
+      code = checkpoint_sync(c, why);
+    result->stopped = (stop_reason)(int)ranks_max((double)stop_asked());
+    result->seconds = ranks_max(ended - began);
+    result->computed = r.done;
+    ranks_sum(&result->computed, 1);
+    code = ranks_agree(code, why);
+    progress_end(&p, p.resumed + result->computed);
+  }
+  scheduler_destroy(&r.scheduler);
+  k->close(&r.worker);
+  free(r.rows);
+  return code;
+}

@@ -1,0 +1,53 @@
+/* ricochet examples: lists or prints the studies that the program ships; never starts MPI. */
+#include "examples.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "command.h"
+
+static const char help[] = "usage: ricochet examples [NAME]\n"
+                           "\n"
+                           "Lists the studies that ricochet ships, or prints one:\n"
+                           "  ricochet examples example1 > example1.yaml\n"
+                           "  ricochet run example1.yaml\n";
+
+/* Text after "title:" on its line. */
+static void print_title(const char *text) {
+  const char *title = strstr(text, "\ntitle:");
+  if (!title)
+    return;
+  title += strlen("\ntitle:");
+  title += strspn(title, " ");
+  printf("%.*s", (int)strcspn(title, "\n"), title);
+}
+
+static void list(void) {
+  for (const example *e = examples; e->name; e++) {
+    printf("%-24s ", e->name);
+    print_title(e->text);
+    putchar('\n');
+  }
+}
+
+int command_examples(int argc, char **argv) {
+  message why;
+  if (argc > 2)
+    return complain(refuse(&why, EXIT_USAGE, "ricochet examples: %d names given, expected at most one", argc - 1),
+                    &why);
+  if (argc == 1)
+    list();
+  else if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0)
+    fputs(help, stdout);
+  else {
+    const example *e = examples;
+    while (e->name && strcmp(e->name, argv[1]) != 0)
+      e++;
+    if (!e->name)
+      return complain(
+          refuse(&why, EXIT_USAGE, "ricochet examples: no study named %s (ricochet examples lists them)", argv[1]),
+          &why);
+    fputs(e->text, stdout);
+  }
+  return finish_output(0);
+}

@@ -1,0 +1,232 @@
+/* ricochet run: a study from its file to its result. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../result/result.h"
+#include "../run/ranks.h"
+#include "command.h"
+#include "compute.h"
+#include "output.h"
+
+static const char help[] =
+    "usage: ricochet run STUDY.yaml [options]\n"
+    "       mpirun -n RANKS ricochet run STUDY.yaml [options]\n"
+    "\n"
+    "Computes every task of a study and writes one HDF5 file.\n"
+    "\n"
+    "  -o, --output FILE.h5     result; default: the study's name with .h5 in the current folder\n"
+    "  --set KEY=VALUE          replaces a value of the study, for example model.gamma=0.1; may be repeated\n"
+    "  --resume                 goes on from the checkpoint of a run that was stopped or killed\n"
+    "  --force                  replaces an existing result and drops an existing checkpoint\n"
+    "  --checkpoint INTERVAL    how often finished tasks are synced to disk; default 30s\n"
+    "  --max-time TIME          stops with a checkpoint after this time, for example 55m; exit code 75\n"
+    "  --progress WHEN          auto (default), always or never\n"
+    "  -h, --help               this text\n"
+    "\n"
+    "Exit codes: 0 done (the last line counts the outcomes of the tasks), 1 the run cannot go on, 2 bad usage or\n"
+    "study, 3 cannot read or write, 75 stopped by SIGUSR1 or --max-time: --resume goes on.\n";
+
+/* A run in all its parts, as one rank sees it. */
+typedef struct run {
+  run_options options;
+  study *study;
+  const kind *kind;
+  kind_plan plan;
+  output output;
+  checkpoint *checkpoint;
+  compute_result computed;
+  extra_rows extra;
+  char *command;
+  double began;
+  uint64_t resumed;
+  uint64_t outcomes[64]; /* tasks by word of the outcome column */
+} run;
+
+/* Rank 0 reads the file, all ranks parse the same text. */
+static int load(run *r, message *why) {
+  char *text = NULL;
+  size_t length = 0;
+  int code = ranks_rank() == 0 ? study_read_file(r->options.study_path, &text, &length, why) : 0;
+  code = ranks_agree(code, why);
+  if (!code)
+    code = ranks_share_text(&text, &length, why);
+  if (!code)
+    code = ranks_agree(
+        study_parse(r->options.study_path, text, length, r->options.sets, r->options.set_count, &r->study, why), why);
+  free(text);
+  if (code)
+    return code;
+  r->kind = kind_of(r->study);
+  return ranks_agree(r->kind->plan(r->study, &r->plan, why), why);
+}
+
+/* Checkpoint and result hold every row once each. */
+static double bytes_needed(const run *r) {
+  return 2 * (double)study_tasks(r->study) * (double)r->plan.rows.row_bytes;
+}
+
+static int claim(run *r, message *why) {
+  int code = output_name(&r->output, &r->options, why);
+  if (code)
+    return code;
+  if (ranks_rank() == 0)
+    code = output_claim(&r->output, &r->options, study_digest(r->study), bytes_needed(r), why);
+  code = ranks_agree(code, why);
+  ranks_share(&r->output.finished, sizeof r->output.finished);
+  return code || r->output.finished ? code : output_join(&r->output, why);
+}
+
+static int open_checkpoint(run *r, message *why) {
+  checkpoint_identity identity = {
+      .digest = study_digest(r->study), .tasks = study_tasks(r->study), .row_bytes = r->plan.rows.row_bytes};
+  snprintf(identity.version, sizeof identity.version, "%s %s", build_version(), build_git_sha());
+  int code = ranks_agree(checkpoint_open(r->output.folder, &identity, &r->checkpoint, why), why);
+  if (!code)
+    r->resumed = checkpoint_done(r->checkpoint);
+  return code;
+}
+
+/* Rows for the writer, from the checkpoint; counts outcomes on the way. */
+static int read_rows(void *user, uint64_t first, uint64_t count, unsigned char *rows, message *why) {
+  run *r = user;
+  const column *outcome = table_column(&r->plan.rows, r->plan.outcome);
+  stop_leave_by_signal();
+  int code = checkpoint_read(r->checkpoint, first, count, rows, why);
+  for (uint64_t i = 0; !code && i < count; i++)
+    r->outcomes[rows[i * r->plan.rows.row_bytes + outcome->offset] % 64]++;
+  return code;
+}
+
+static int read_extra(void *user, uint64_t first, uint64_t count, unsigned char *rows, message *why) {
+  const extra_rows *extra = user;
+  (void)why;
+  memcpy(rows, extra->rows + first * extra->layout.row_bytes, count * extra->layout.row_bytes);
+  return 0;
+}
+
+static int still_ours(void *user, message *why) {
+  const run *r = user;
+  return lock_check(r->output.lock, why);
+}
+
+static int write_result(run *r, message *why) {
+  result_header header = {.study = r->study,
+                          .command = r->command,
+                          .git_sha = build_git_sha(),
+                          .libraries = build_libraries(),
+                          .compiler = build_compiler(),
+                          .version = build_version(),
+                          .compute_seconds = r->computed.seconds,
+                          .total_seconds = ranks_max(clock_seconds() - r->began),
+                          .ranks = ranks_count(),
+                          .tasks_computed = r->computed.computed,
+                          .tasks_resumed = r->resumed};
+  result_table tables[] = {{.layout = &r->plan.rows, .rows = study_tasks(r->study), .read = read_rows, .user = r},
+                           {.layout = &r->extra.layout, .rows = r->extra.count, .read = read_extra, .user = &r->extra}};
+  size_t count = r->extra.layout.column_count > 0 ? 2 : 1;
+  return result_write(MPI_COMM_WORLD, r->output.path, &header, tables, count, still_ours, r, why);
+}
+
+/* Everything after the tasks: their rows into the result. */
+static int assemble(run *r, message *why) {
+  ranks_barrier();
+  int code = ranks_agree(checkpoint_rescan(r->checkpoint, why), why);
+  if (code)
+    return code;
+  if (checkpoint_done(r->checkpoint) < study_tasks(r->study)) {
+    static const char *const reasons[] = {"by another rank", "by SIGUSR1", "by --max-time", "by a signal"};
+    return refuse(why, EXIT_STOPPED, "%s: stopped %s with %llu of %llu tasks done; --resume goes on", r->output.path,
+                  reasons[r->computed.stopped], (unsigned long long)checkpoint_done(r->checkpoint),
+                  (unsigned long long)study_tasks(r->study));
+  }
+  code = ranks_agree(r->kind->extra(r->study, &r->extra, why), why);
+  if (!code)
+    code = write_result(r, why);
+  ranks_sum(r->outcomes, 64);
+  return code;
+}
+
+/* The last line: "15 tasks: 14 admissible, 1 grazing -> example.h5 (0.02 s computing, 0.5 s in all)". */
+static void print_summary(const run *r) {
+  const column *outcome = table_column(&r->plan.rows, r->plan.outcome);
+  const char *separator = ":";
+  printf("%llu tasks", (unsigned long long)study_tasks(r->study));
+  for (size_t i = 0; i < outcome->name_count; i++)
+    if (r->outcomes[i] > 0) {
+      printf("%s %llu %s", separator, (unsigned long long)r->outcomes[i], outcome->names[i]);
+      separator = ",";
+    }
+  printf(" -> %s (%.3g s computing, %.3g s in all)\n", r->output.path, r->computed.seconds, clock_seconds() - r->began);
+}
+
+static int run_study(run *r, message *why) {
+  int code = load(r, why);
+  if (!code)
+    code = claim(r, why);
+  if (code)
+    return code;
+  if (r->output.finished) {
+    if (ranks_rank() == 0) {
+      printf("%s: finished and verified, nothing to do\n", r->output.path);
+      lock_release(&r->output.lock, 1);
+    }
+    return 0;
+  }
+  code = open_checkpoint(r, why);
+  if (!code)
+    code = compute(r->study, r->kind, &r->plan, r->checkpoint, &r->options, &r->computed, why);
+  if (!code)
+    code = assemble(r, why);
+  checkpoint_close(&r->checkpoint);
+  output_release(&r->output, code == 0);
+  if (!code && ranks_rank() == 0)
+    print_summary(r);
+  return code;
+}
+
+/* The command line as typed, words joined by spaces. */
+static char *join_words(int argc, char **argv) {
+  size_t size = sizeof "ricochet";
+  for (int i = 0; i < argc; i++)
+    size += strlen(argv[i]) + 1;
+  char *line = malloc(size);
+  if (!line)
+    return NULL;
+  strcpy(line, "ricochet");
+  for (int i = 0; i < argc; i++)
+    strcat(strcat(line, " "), argv[i]);
+  return line;
+}
+
+static int run_on_ranks(run *r, int argc, char **argv, message *why) {
+  r->command = join_words(argc, argv);
+  if (!r->command)
+    return refuse(why, EXIT_RUN, "no memory for the command line");
+  stop_watch(r->options.max_seconds);
+  return run_study(r, why);
+}
+
+int command_run(int argc, char **argv) {
+  run r = {0};
+  message why;
+  int code = run_options_parse(argc, argv, &r.options, &why);
+  if (!code && r.options.help) {
+    fputs(help, stdout);
+    run_options_clear(&r.options);
+    return finish_output(0);
+  }
+  ranks_start(&argc, &argv);
+  r.began = clock_seconds();
+  if (!code)
+    code = run_on_ranks(&r, argc, argv, &why);
+  int speaks = ranks_rank() == 0;
+  ranks_finish();
+  if (code && speaks)
+    complain(code, &why);
+  study_destroy(&r.study);
+  free(r.extra.rows);
+  free(r.command);
+  run_options_clear(&r.options);
+  return code || !speaks ? code : finish_output(0);
+}

@@ -1,0 +1,245 @@
+#include "checkpoint.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <sys/uio.h>
+#include <unistd.h>
+
+#include "checkpoint_files.h"
+
+uint64_t digest_bytes(uint64_t seed, const void *bytes, size_t size) {
+  const unsigned char *byte = bytes;
+  uint64_t digest = seed ? seed : UINT64_C(0xcbf29ce484222325);
+  for (size_t i = 0; i < size; i++)
+    digest = (digest ^ byte[i]) * UINT64_C(0x100000001b3);
+  return digest;
+}
+
+uint64_t part_header_check(const part_header *header) {
+  return digest_bytes(0, header, offsetof(part_header, check));
+}
+
+uint64_t record_header_check(const record_header *header) {
+  return digest_bytes(0, header, offsetof(record_header, check));
+}
+
+int refuse_part(const char *path, const char *what, message *why) {
+  return refuse(why, EXIT_FILES, "%s: cannot %s: %s", path, what, strerror(errno));
+}
+
+static void part_name(unsigned generation, unsigned rank, char name[PART_NAME_BYTES]) {
+  snprintf(name, PART_NAME_BYTES, "part-%04u-%05u", generation, rank);
+}
+
+void part_path(const char *folder, unsigned generation, unsigned rank, char *path) {
+  char name[PART_NAME_BYTES];
+  part_name(generation, rank, name);
+  snprintf(path, PATH_MAX, "%s/%s", folder, name);
+}
+
+bool part_name_parse(const char *name, unsigned *generation, unsigned *rank) {
+  char same[PART_NAME_BYTES];
+  if (sscanf(name, "part-%9u-%9u", generation, rank) != 2)
+    return false;
+  part_name(*generation, *rank, same);
+  return strcmp(name, same) == 0;
+}
+
+static int set_identity(checkpoint *c, const char *folder, const checkpoint_identity *identity, message *why) {
+  if (!(identity->row_bytes >= 1) || identity->tasks > UINT64_MAX / identity->row_bytes)
+    return refuse(why, EXIT_RUN, "%s: %llu tasks with rows of %llu bytes have no checkpoint", folder,
+                  (unsigned long long)identity->tasks, (unsigned long long)identity->row_bytes);
+  const int length = snprintf(c->folder, sizeof c->folder, "%s", folder);
+  if (length < 0 || (size_t)length >= sizeof c->folder)
+    return refuse(why, EXIT_FILES, "%s: the name is too long", folder);
+  c->identity.digest = identity->digest;
+  c->identity.tasks = identity->tasks;
+  c->identity.row_bytes = identity->row_bytes;
+  /* What stands behind the end of the caller's string must not count as a difference. */
+  snprintf(c->identity.version, sizeof c->identity.version, "%.63s", identity->version);
+  return 0;
+}
+
+int checkpoint_open(const char *folder, const checkpoint_identity *identity, checkpoint **out, message *why) {
+  *out = NULL;
+  checkpoint *c = calloc(1, sizeof *c);
+  if (!c || !(c->buffer = malloc(PART_BUFFER_BYTES))) {
+    free(c);
+    return refuse(why, EXIT_RUN, "%s: out of memory for the checkpoint", folder);
+  }
+  c->own_fd = c->read_fd = -1;
+  int code = set_identity(c, folder, identity, why);
+  if (!code)
+    code = checkpoint_scan(c, true, why);
+  if (code) {
+    checkpoint_close(&c);
+    return code;
+  }
+  c->generation = 1;
+  for (size_t i = 0; i < c->part_count; i++)
+    if (c->parts[i].generation >= c->generation)
+      c->generation = c->parts[i].generation + 1;
+  *out = c;
+  return 0;
+}
+
+void checkpoint_close(checkpoint **c) {
+  if (!*c)
+    return;
+  if ((*c)->own_fd >= 0)
+    close((*c)->own_fd);
+  if ((*c)->read_fd >= 0)
+    close((*c)->read_fd);
+  index_clear(&(*c)->index);
+  free((*c)->parts);
+  free((*c)->buffer);
+  free(*c);
+  *c = NULL;
+}
+
+int checkpoint_rescan(checkpoint *c, message *why) {
+  return checkpoint_scan(c, false, why);
+}
+
+uint64_t checkpoint_done(const checkpoint *c) {
+  return c->index.done;
+}
+
+uint64_t checkpoint_missing(const checkpoint *c, uint64_t n, uint64_t *task) {
+  const index_gap *gap = index_find_gap(&c->index, n);
+  if (!gap)
+    return 0;
+  const uint64_t skipped = n - gap->before;
+  *task = gap->first + skipped;
+  return gap->count - skipped;
+}
+
+/* Leaves out what has been written already. */
+static void advance(struct iovec *pieces, int count, size_t written) {
+  for (int i = 0; i < count; i++) {
+    const size_t step = written < pieces[i].iov_len ? written : pieces[i].iov_len;
+    pieces[i].iov_base = (char *)pieces[i].iov_base + step;
+    pieces[i].iov_len -= step;
+    written -= step;
+  }
+}
+
+/* Writes all of the pieces at the end of this rank's file, or nothing: after a failure it is cut back to its last good
+ * record. If not even that can be done the file is given up, as records after a torn one would never be read. */
+static int append_pieces(checkpoint *c, struct iovec *pieces, int count, message *why) {
+  size_t left = 0;
+  for (int i = 0; i < count; i++)
+    left += pieces[i].iov_len;
+  const size_t size = left;
+  while (left) {
+    const ssize_t written = writev(c->own_fd, pieces, count);
+    if (written < 0 && errno == EINTR)
+      continue;
+    if (written <= 0) {
+      if (written == 0)
+        errno = ENOSPC;
+      refuse_part(c->own_path, "write", why);
+      if (ftruncate(c->own_fd, (off_t)c->own_size)) {
+        close(c->own_fd);
+        c->own_fd = -1;
+      }
+      return EXIT_FILES;
+    }
+    advance(pieces, count, (size_t)written);
+    left -= (size_t)written;
+  }
+  c->own_size += size;
+  return 0;
+}
+
+int checkpoint_begin(checkpoint *c, int rank, message *why) {
+  part_path(c->folder, c->generation, (unsigned)rank, c->own_path);
+  /* O_EXCL: a file of this name would be that of another run, which the lock should have kept away. */
+  c->own_fd = open(c->own_path, O_CREAT | O_EXCL | O_WRONLY | O_APPEND | O_CLOEXEC, 0666);
+  if (c->own_fd < 0)
+    return refuse_part(c->own_path, "create", why);
+  part_header header = {.magic = PART_MAGIC, .format = PART_FORMAT, .identity = c->identity};
+  header.check = part_header_check(&header);
+  const int code = append_pieces(c, &(struct iovec){.iov_base = &header, .iov_len = sizeof header}, 1, why);
+  if (code && c->own_fd >= 0) { /* records without a header before them would never be read */
+    close(c->own_fd);
+    c->own_fd = -1;
+  }
+  return code;
+}
+
+int checkpoint_append(checkpoint *c, uint64_t first, uint64_t count, const void *rows, message *why) {
+  const uint64_t tasks = c->identity.tasks;
+  if (!(count >= 1 && first < tasks && count <= tasks - first))
+    return refuse(why, EXIT_FILES, "%s: tasks %llu to %llu are not among the %llu of the study", c->own_path,
+                  (unsigned long long)first, (unsigned long long)(first + count - 1), (unsigned long long)tasks);
+  if (c->own_fd < 0)
+    return refuse(why, EXIT_FILES, "%s: not open for writing", c->folder);
+  record_header header = {
+      .magic = RECORD_MAGIC, .first = first, .count = count, .bytes = count * c->identity.row_bytes};
+  header.rows = digest_bytes(0, rows, header.bytes);
+  header.check = record_header_check(&header);
+  struct iovec pieces[] = {{.iov_base = &header, .iov_len = sizeof header},
+                           {.iov_base = (void *)(uintptr_t)rows, .iov_len = header.bytes}};
+  return append_pieces(c, pieces, 2, why);
+}
+
+/* Some file systems cannot sync folders (EINVAL), and a parent may be closed to reading (EACCES): both leave the folder
+ * to the system's own pace, which is no reason to stop a run. */
+static int sync_folder(const char *path, message *why) {
+  const int fd = open(path, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  int code = 0;
+  if ((fd < 0 || fsync(fd)) && errno != EINVAL && errno != EACCES)
+    code = refuse_part(path, "sync the folder", why);
+  if (fd >= 0)
+    close(fd);
+  return code;
+}
+
+int checkpoint_sync(checkpoint *c, message *why) {
+  if (c->own_fd < 0)
+    return 0;
+  if (fdatasync(c->own_fd))
+    return refuse_part(c->own_path, "sync", why);
+  if (c->folder_synced)
+    return 0;
+  char parent[PATH_MAX];
+  snprintf(parent, sizeof parent, "%s/..", c->folder);
+  int code = sync_folder(c->folder, why);
+  if (!code)
+    code = sync_folder(parent, why);
+  c->folder_synced = !code;
+  return code;
+}
+
+static int remove_parts(const char *folder, DIR *entries, message *why) {
+  const struct dirent *entry;
+  unsigned generation, rank;
+  while ((entry = readdir(entries))) {
+    char path[PATH_MAX];
+    if (!part_name_parse(entry->d_name, &generation, &rank))
+      continue;
+    part_path(folder, generation, rank, path);
+    if (unlink(path) && errno != ENOENT)
+      return refuse_part(path, "remove", why);
+  }
+  return 0;
+}
+
+int checkpoint_remove(const char *folder, message *why) {
+  DIR *entries = opendir(folder);
+  if (!entries)
+    return errno == ENOENT ? 0 : refuse_part(folder, "read the folder", why);
+  const int code = remove_parts(folder, entries, why);
+  closedir(entries);
+  if (code)
+    return code;
+  if (rmdir(folder) && errno != ENOTEMPTY && errno != EEXIST && errno != ENOENT)
+    return refuse_part(folder, "remove the folder", why);
+  return 0;
+}

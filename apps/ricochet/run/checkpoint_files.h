@@ -1,0 +1,78 @@
+/* The files of a checkpoint, for its own sources only: names, what is in them, and the state that an open one has.
+ *
+ * A file `part-GENERATION-RANK` is one part_header and then records, each a record_header and its rows, in the byte
+ * order of the machine (another order does not find its magic number). */
+#ifndef RICOCHET_APP_CHECKPOINT_FILES_H
+#define RICOCHET_APP_CHECKPOINT_FILES_H
+
+#include <limits.h>
+#include <stdbool.h>
+
+#include "checkpoint.h"
+#include "checkpoint_index.h"
+
+#define PART_MAGIC   UINT64_C(0x74706b6368636972) /* "ricchkpt" */
+#define RECORD_MAGIC UINT64_C(0x64726f6365726372) /* "rcrecord" */
+enum { PART_FORMAT = 1, PART_BUFFER_BYTES = 1 << 20, PART_NAME_BYTES = 40 };
+
+typedef struct part_header {
+  uint64_t magic, format;
+  checkpoint_identity identity; /* version padded with zeros */
+  uint64_t check;               /* digest of all that stands before */
+} part_header;
+
+typedef struct record_header {
+  uint64_t magic, first, count, bytes; /* bytes = count * row_bytes */
+  uint64_t rows;                       /* digest of the rows */
+  uint64_t check;                      /* digest of all that stands before */
+} record_header;
+
+/* Written as they are: no padding that could hold anything. */
+_Static_assert(sizeof(checkpoint_identity) == 88 && sizeof(part_header) == 112, "part header has padding");
+_Static_assert(sizeof(record_header) == 48, "record header has padding");
+
+/** A file found in the folder. */
+typedef struct part {
+  unsigned generation, rank;
+  uint64_t scanned; /* end of its last good record; 0 as long as its header is not there */
+  bool suspect;     /* the rows of the record after that did not verify */
+} part;
+
+struct checkpoint {
+  char folder[PATH_MAX - PART_NAME_BYTES];
+  checkpoint_identity identity;
+  unsigned generation; /* of the file that checkpoint_begin creates: one above all that were found */
+  part *parts;         /* [part_count], in the order of generation and rank, later finds after earlier ones */
+  size_t part_count;
+  checkpoint_index index;
+
+  int own_fd; /* -1 before checkpoint_begin and after a failure that could not be undone */
+  char own_path[PATH_MAX];
+  uint64_t own_size;
+  bool folder_synced;
+
+  int read_fd; /* of parts[read_part]; -1 when none is open. Only one, as there may be thousands of parts. */
+  size_t read_part;
+  size_t verified_part;     /* where the record stands that checkpoint_read verified last */
+  uint64_t verified_offset; /* 0 when there is none */
+  record_header verified;   /* its header */
+  unsigned char *buffer;    /* [PART_BUFFER_BYTES] */
+};
+
+uint64_t part_header_check(const part_header *header);
+uint64_t record_header_check(const record_header *header);
+
+/** Path of a part. @param path [PATH_MAX] */
+void part_path(const char *folder, unsigned generation, unsigned rank, char *path);
+
+/** Whether a folder entry is named like a part, and which one. */
+bool part_name_parse(const char *name, unsigned *generation, unsigned *rank);
+
+/** EXIT_FILES with "PATH: cannot WHAT: reason of errno". */
+int refuse_part(const char *path, const char *what, message *why);
+
+/** Looks for new parts in the folder, reads all parts on from where the last scan ended and settles the index.
+ *  @param rows  digest the rows too, not only the headers */
+int checkpoint_scan(checkpoint *c, bool rows, message *why);
+
+#endif

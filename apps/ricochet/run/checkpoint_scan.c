@@ -1,0 +1,261 @@
+#include "checkpoint_files.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+static void path_of(const checkpoint *c, size_t number, char *path) {
+  part_path(c->folder, c->parts[number].generation, c->parts[number].rank, path);
+}
+
+static int refuse_number(const checkpoint *c, size_t number, const char *what, message *why) {
+  char path[PATH_MAX];
+  path_of(c, number, path);
+  return refuse_part(path, what, why);
+}
+
+/* Makes read_fd the file of this part. */
+static int open_part(checkpoint *c, size_t number, message *why) {
+  if (c->read_fd >= 0 && c->read_part == number)
+    return 0;
+  if (c->read_fd >= 0)
+    close(c->read_fd);
+  char path[PATH_MAX];
+  path_of(c, number, path);
+  c->read_fd = open(path, O_RDONLY | O_CLOEXEC);
+  c->read_part = number;
+  return c->read_fd >= 0 ? 0 : refuse_part(path, "open", why);
+}
+
+/* @returns bytes read, fewer than `size` at the end of the file, or -1 with errno. */
+static int64_t read_at(int fd, void *bytes, size_t size, uint64_t offset) {
+  size_t done = 0;
+  while (done < size) {
+    const ssize_t step = pread(fd, (char *)bytes + done, size - done, (off_t)(offset + done));
+    if (step < 0 && errno == EINTR)
+      continue;
+    if (step < 0)
+      return -1;
+    if (step == 0)
+      break;
+    done += (size_t)step;
+  }
+  return (int64_t)done;
+}
+
+/* What a look at a file can find: something that verifies, something that does not (the end, a torn tail, a flipped
+ * bit), or an error of the file system, which is in `why`. */
+typedef enum finding { GOOD, BAD, UNREADABLE } finding;
+
+/* Reads from the open part; a file that ends earlier is BAD. */
+static finding read_part(const checkpoint *c, void *bytes, size_t size, uint64_t offset, message *why) {
+  const int64_t got = read_at(c->read_fd, bytes, size, offset);
+  if (got < 0) {
+    refuse_number(c, c->read_part, "read", why);
+    return UNREADABLE;
+  }
+  return (uint64_t)got == size ? GOOD : BAD;
+}
+
+static finding read_record_header(const checkpoint *c, uint64_t offset, record_header *header, message *why) {
+  const finding found = read_part(c, header, sizeof *header, offset, why);
+  if (found != GOOD)
+    return found;
+  const uint64_t tasks = c->identity.tasks;
+  const bool good = header->magic == RECORD_MAGIC && header->check == record_header_check(header) &&
+                    header->count >= 1 && header->first < tasks && header->count <= tasks - header->first &&
+                    header->bytes == header->count * c->identity.row_bytes;
+  return good ? GOOD : BAD;
+}
+
+static finding verify_rows(const checkpoint *c, uint64_t offset, const record_header *header, message *why) {
+  uint64_t digest = 0;
+  offset += sizeof *header;
+  for (uint64_t left = header->bytes; left;) {
+    const size_t step = left < PART_BUFFER_BYTES ? (size_t)left : PART_BUFFER_BYTES;
+    const finding found = read_part(c, c->buffer, step, offset, why);
+    if (found != GOOD)
+      return found;
+    digest = digest_bytes(digest, c->buffer, step);
+    offset += step;
+    left -= step;
+  }
+  return digest == header->rows ? GOOD : BAD;
+}
+
+static int compare_identity(const char *path, const checkpoint_identity *found, const checkpoint_identity *expected,
+                            message *why) {
+  if (strcmp(found->version, expected->version) != 0)
+    return refuse(why, EXIT_USAGE, "%s: written by version \"%s\", this is \"%s\"", path, found->version,
+                  expected->version);
+  if (found->tasks != expected->tasks || found->row_bytes != expected->row_bytes)
+    return refuse(why, EXIT_USAGE,
+                  "%s: shape of another study: %llu tasks with rows of %llu bytes, expected %llu of %llu", path,
+                  (unsigned long long)found->tasks, (unsigned long long)found->row_bytes,
+                  (unsigned long long)expected->tasks, (unsigned long long)expected->row_bytes);
+  if (found->digest != expected->digest)
+    return refuse(why, EXIT_USAGE, "%s: belongs to another study (digest %016llx, expected %016llx)", path,
+                  (unsigned long long)found->digest, (unsigned long long)expected->digest);
+  return 0;
+}
+
+/* Leaves `scanned` at 0 when the header is not (yet) there. */
+static int scan_part_header(checkpoint *c, size_t number, message *why) {
+  part_header header;
+  const finding found = read_part(c, &header, sizeof header, 0, why);
+  if (found != GOOD)
+    return found == UNREADABLE ? EXIT_FILES : 0;
+  if (header.magic != PART_MAGIC || header.check != part_header_check(&header))
+    return 0;
+  char path[PATH_MAX];
+  path_of(c, number, path);
+  if (header.format != PART_FORMAT)
+    return refuse(why, EXIT_USAGE, "%s: checkpoint format %llu, this version reads %d", path,
+                  (unsigned long long)header.format, PART_FORMAT);
+  header.identity.version[sizeof header.identity.version - 1] = '\0';
+  c->parts[number].scanned = sizeof header;
+  return compare_identity(path, &header.identity, &c->identity, why);
+}
+
+/* Whether the record at the end of what was scanned is whole; its rows are digested if that is asked for, or if they
+ * failed before (then they may have been in the middle of being written). */
+static finding look_at_record(checkpoint *c, size_t number, uint64_t size, bool rows, record_header *header,
+                              message *why) {
+  part *p = &c->parts[number];
+  const finding found = read_record_header(c, p->scanned, header, why);
+  if (found != GOOD)
+    return found;
+  if (header->bytes > size || p->scanned + sizeof *header > size - header->bytes)
+    return BAD; /* its rows go on behind the end of the file */
+  if (!rows && !p->suspect)
+    return GOOD;
+  const finding verified = verify_rows(c, p->scanned, header, why);
+  p->suspect = verified == BAD;
+  return verified;
+}
+
+static int scan_part(checkpoint *c, size_t number, bool rows, message *why) {
+  part *p = &c->parts[number];
+  int code = open_part(c, number, why);
+  if (!code && !p->scanned)
+    code = scan_part_header(c, number, why);
+  if (code || !p->scanned)
+    return code;
+  struct stat status;
+  if (fstat(c->read_fd, &status))
+    return refuse_number(c, number, "read", why);
+  record_header header;
+  finding found;
+  while ((found = look_at_record(c, number, (uint64_t)status.st_size, rows, &header, why)) == GOOD) {
+    const index_range range = {
+        .first = header.first, .count = header.count, .offset = p->scanned, .part = (uint64_t)number};
+    code = index_add(&c->index, range, why);
+    if (code)
+      return code;
+    p->scanned += sizeof header + header.bytes;
+  }
+  return found == UNREADABLE ? EXIT_FILES : 0;
+}
+
+static int compare_parts(const void *a, const void *b) {
+  const part *x = a, *y = b;
+  if (x->generation != y->generation)
+    return x->generation < y->generation ? -1 : 1;
+  return (x->rank > y->rank) - (x->rank < y->rank);
+}
+
+static bool is_known(const checkpoint *c, unsigned generation, unsigned rank) {
+  for (size_t i = 0; i < c->part_count; i++)
+    if (c->parts[i].generation == generation && c->parts[i].rank == rank)
+      return true;
+  return false;
+}
+
+static int note_part(checkpoint *c, unsigned generation, unsigned rank, message *why) {
+  part *parts = realloc(c->parts, (c->part_count + 1) * sizeof *parts);
+  if (!parts)
+    return refuse(why, EXIT_RUN, "%s: out of memory for %zu files", c->folder, c->part_count + 1);
+  c->parts = parts;
+  c->parts[c->part_count++] = (part){.generation = generation, .rank = rank};
+  return 0;
+}
+
+/* New parts are sorted, so that every rank numbers them alike; known ones keep the numbers that the index refers to. */
+static int find_parts(checkpoint *c, message *why) {
+  DIR *entries = opendir(c->folder);
+  if (!entries)
+    return refuse_part(c->folder, "read the folder", why);
+  const size_t known = c->part_count;
+  int code = 0;
+  const struct dirent *entry;
+  while (!code && (errno = 0, entry = readdir(entries))) {
+    unsigned generation, rank;
+    if (part_name_parse(entry->d_name, &generation, &rank) && !is_known(c, generation, rank))
+      code = note_part(c, generation, rank, why);
+  }
+  if (!code && errno)
+    code = refuse_part(c->folder, "read the folder", why);
+  closedir(entries);
+  if (c->part_count > known)
+    qsort(c->parts + known, c->part_count - known, sizeof *c->parts, compare_parts);
+  return code;
+}
+
+int checkpoint_scan(checkpoint *c, bool rows, message *why) {
+  int code = find_parts(c, why);
+  for (size_t i = 0; !code && i < c->part_count; i++)
+    code = scan_part(c, i, rows, why);
+  return code ? code : index_settle(&c->index, c->identity.tasks, why);
+}
+
+/* Opens the record that a range stands in and verifies it, unless it is the one that was verified last. */
+static int select_record(checkpoint *c, const index_range *range, message *why) {
+  const int code = open_part(c, range->part, why);
+  if (code || (c->verified_offset == range->offset && c->verified_part == range->part))
+    return code;
+  c->verified_offset = 0;
+  finding found = read_record_header(c, range->offset, &c->verified, why);
+  if (found == GOOD)
+    found = verify_rows(c, range->offset, &c->verified, why);
+  if (found == UNREADABLE)
+    return EXIT_FILES;
+  char path[PATH_MAX];
+  path_of(c, range->part, path);
+  if (found == BAD)
+    return refuse(why, EXIT_FILES, "%s: the record of tasks %llu to %llu has been damaged", path,
+                  (unsigned long long)range->first, (unsigned long long)(range->first + range->count - 1));
+  c->verified_part = range->part;
+  c->verified_offset = range->offset;
+  return 0;
+}
+
+int checkpoint_read(checkpoint *c, uint64_t first, uint64_t count, void *rows, message *why) {
+  unsigned char *to = rows;
+  while (count) {
+    const index_range *range = index_find(&c->index, first);
+    if (!range)
+      return refuse(why, EXIT_FILES, "%s: task %llu is in no record", c->folder, (unsigned long long)first);
+    const int code = select_record(c, range, why);
+    if (code)
+      return code;
+    const uint64_t there = range->count - (first - range->first), step = count < there ? count : there;
+    const size_t bytes = step * c->identity.row_bytes;
+    const uint64_t skipped = (first - c->verified.first) * c->identity.row_bytes;
+    const finding found = read_part(c, to, bytes, range->offset + sizeof c->verified + skipped, why);
+    if (found == BAD) {
+      errno = EIO; /* it was longer when it was verified */
+      return refuse_number(c, range->part, "read", why);
+    }
+    if (found == UNREADABLE)
+      return EXIT_FILES;
+    to += bytes;
+    first += step;
+    count -= step;
+  }
+  return 0;
+}

@@ -1,0 +1,199 @@
+/* F_OFD_SETLK (POSIX 2024, Linux since 3.15) is shown by glibc 2.36 to _GNU_SOURCE only. The older F_SETLK will not do:
+ * a process loses such locks as soon as any part of it, a library say, closes the file. */
+#define _GNU_SOURCE
+
+#include "lock.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <limits.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "stop.h"
+
+static const double retry_seconds = 0.1;
+
+struct lock {
+  int fd;
+  char folder[PATH_MAX];
+  char path[PATH_MAX];
+};
+
+static int refuse_file(const char *path, const char *what, message *why) {
+  return refuse(why, EXIT_FILES, "%s: cannot %s: %s", path, what, strerror(errno));
+}
+
+static lock *lock_allocate(const char *folder, message *why) {
+  lock *l = malloc(sizeof *l);
+  if (!l) {
+    refuse(why, EXIT_FILES, "%s: out of memory for the lock", folder);
+    return NULL;
+  }
+  l->fd = -1;
+  const int length = snprintf(l->path, sizeof l->path, "%s/lock", folder);
+  if (length < 0 || (size_t)length >= sizeof l->path) {
+    refuse(why, EXIT_FILES, "%s: the name is too long", folder);
+    free(l);
+    return NULL;
+  }
+  memcpy(l->folder, folder, strlen(folder) + 1);
+  return l;
+}
+
+static void lock_close(lock *l) {
+  if (l->fd >= 0)
+    close(l->fd);
+  l->fd = -1;
+}
+
+/* @param length  in bytes, 0 for all that follow */
+static int set_lock(const lock *l, short type, off_t start, off_t length) {
+  struct flock range = {.l_type = type, .l_whence = SEEK_SET, .l_start = start, .l_len = length};
+  return fcntl(l->fd, F_OFD_SETLK, &range);
+}
+
+static bool somebody_holds(int error) {
+  return error == EAGAIN || error == EACCES;
+}
+
+/* False also when the path leads nowhere. */
+static bool path_leads_to_file(const lock *l) {
+  struct stat locked, found;
+  return fstat(l->fd, &locked) == 0 && stat(l->path, &found) == 0 && locked.st_dev == found.st_dev &&
+         locked.st_ino == found.st_ino;
+}
+
+static void read_holder(const lock *l, char *text, size_t size) {
+  const ssize_t length = pread(l->fd, text, size - 1, 0);
+  text[length > 0 ? length : 0] = '\0';
+  text[strcspn(text, "\n")] = '\0';
+  if (!text[0]) /* a holder that has not yet written its name, or could not */
+    snprintf(text, size, "a process that left no name");
+}
+
+static int write_holder(const lock *l, message *why) {
+  char host[256] = "unknown", since[32] = "", text[400];
+  gethostname(host, sizeof host - 1); /* on failure the name stays unknown, which stops nobody */
+  const time_t now = time(NULL);
+  struct tm local;
+  if (localtime_r(&now, &local))
+    strftime(since, sizeof since, "%Y-%m-%d %H:%M:%S", &local);
+  const int length = snprintf(text, sizeof text, "host %s, process %ld, since %s\n", host, (long)getpid(), since);
+  if (ftruncate(l->fd, 0) || pwrite(l->fd, text, (size_t)length, 0) != length)
+    return refuse_file(l->path, "write", why);
+  return 0;
+}
+
+typedef enum attempt { TAKEN, HELD, REPLACED, IMPOSSIBLE } attempt;
+
+/* One attempt at the whole range; `holder` is written when HELD, `why` when IMPOSSIBLE, the file is open when TAKEN. */
+static attempt try_whole(lock *l, char *holder, size_t size, message *why) {
+  if (mkdir(l->folder, 0777) && errno != EEXIST) {
+    refuse_file(l->folder, "create the folder", why);
+    return IMPOSSIBLE;
+  }
+  l->fd = open(l->path, O_CREAT | O_RDWR | O_CLOEXEC, 0666);
+  if (l->fd < 0) {
+    if (errno == ENOENT) /* its last holder removed the folder since the mkdir */
+      return REPLACED;
+    refuse_file(l->path, "open", why);
+    return IMPOSSIBLE;
+  }
+  attempt result = TAKEN;
+  if (set_lock(l, F_WRLCK, 0, 0)) {
+    result = somebody_holds(errno) ? HELD : IMPOSSIBLE;
+    if (result == HELD)
+      read_holder(l, holder, size);
+    else
+      refuse_file(l->path, "lock", why);
+  } else if (!path_leads_to_file(l)) {
+    result = REPLACED;
+  }
+  if (result != TAKEN)
+    lock_close(l);
+  return result;
+}
+
+static int wait_for_whole(lock *l, double wait_seconds, message *why) {
+  const double began = clock_seconds();
+  char holder[400] = "a process that removes it";
+  for (;;) {
+    const attempt result = try_whole(l, holder, sizeof holder, why);
+    if (result == TAKEN)
+      return 0;
+    if (result == IMPOSSIBLE)
+      return EXIT_FILES;
+    const double waited = clock_seconds() - began;
+    if (!(waited < wait_seconds))
+      return refuse(why, EXIT_FILES, "%s: held by %s; waited %.1f s", l->path, holder, waited);
+    nanosleep(&(struct timespec){.tv_nsec = (long)(1e9 * retry_seconds)}, NULL);
+  }
+}
+
+int lock_take(const char *folder, double wait_seconds, lock **out, message *why) {
+  *out = NULL;
+  lock *l = lock_allocate(folder, why);
+  if (!l)
+    return EXIT_FILES;
+  int code = wait_for_whole(l, wait_seconds, why);
+  if (!code)
+    code = write_holder(l, why);
+  if (!code && set_lock(l, F_UNLCK, 1, 0)) /* the bytes of the other ranks, who join now */
+    code = refuse_file(l->path, "unlock", why);
+  if (code)
+    lock_release(&l, 0);
+  *out = l;
+  return code;
+}
+
+static int join(lock *l, int rank, message *why) {
+  l->fd = open(l->path, O_RDWR | O_CLOEXEC);
+  if (l->fd < 0)
+    return refuse_file(l->path, "open", why);
+  if (set_lock(l, F_WRLCK, rank, 1)) {
+    if (!somebody_holds(errno))
+      return refuse_file(l->path, "lock", why);
+    char holder[400];
+    read_holder(l, holder, sizeof holder);
+    return refuse(why, EXIT_FILES, "%s: rank %d finds its place held by %s", l->path, rank, holder);
+  }
+  return lock_check(l, why);
+}
+
+int lock_join(const char *folder, int rank, lock **out, message *why) {
+  *out = NULL;
+  lock *l = lock_allocate(folder, why);
+  if (!l)
+    return EXIT_FILES;
+  const int code = join(l, rank, why);
+  if (code)
+    lock_release(&l, 0);
+  *out = l;
+  return code;
+}
+
+int lock_check(const lock *l, message *why) {
+  if (!path_leads_to_file(l))
+    return refuse(why, EXIT_FILES, "%s: the lock was removed or replaced while this run held it", l->path);
+  return 0;
+}
+
+void lock_release(lock **l, int remove) {
+  if (!*l)
+    return;
+  /* Removed before it is unlocked: whoever waits on this file finds that the path leads elsewhere and opens anew.
+   * A file or folder that stays behind locks nobody out, so failures are not worth a message. */
+  if (remove && (*l)->fd >= 0 && path_leads_to_file(*l)) {
+    unlink((*l)->path);
+    rmdir((*l)->folder);
+  }
+  lock_close(*l);
+  free(*l);
+  *l = NULL;
+}

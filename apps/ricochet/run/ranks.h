@@ -1,0 +1,33 @@
+/* The ranks of a run as one program: start, agreement on failures, small reductions. All of MPI that commands need.
+ *
+ * Every function but ranks_rank and ranks_count is collective. MPI failures outside the scheduler and the result writer
+ * end the job: there is nobody left to agree with. */
+#ifndef RICOCHET_APP_RANKS_H
+#define RICOCHET_APP_RANKS_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "../study/message.h"
+
+void ranks_start(int *argc, char ***argv);
+void ranks_finish(void);
+int ranks_rank(void);
+int ranks_count(void);
+void ranks_barrier(void);
+
+/** Agrees on a failure: returns the code of the lowest rank that failed, on every rank, with its message; 0 when none
+ *  did. */
+int ranks_agree(int code, message *why);
+
+/** Gives rank 0's value to all. */
+void ranks_share(void *bytes, size_t size);
+
+/** Gives rank 0's text to all: malloc'd on the other ranks, freed by the caller everywhere. */
+int ranks_share_text(char **text, size_t *length, message *why);
+
+double ranks_max(double value);
+/** Sums over the ranks, in place; the result is on every rank. */
+void ranks_sum(uint64_t *values, size_t count);
+
+#endif

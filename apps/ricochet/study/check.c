@@ -1,0 +1,172 @@
+/* What the schema's rows cannot say: how the values of several keys fit together. */
+#include <math.h>
+#include <stdlib.h>
+
+#include "number.h"
+#include "parts.h"
+
+static int check_missing(const study *s, message *why) {
+  const source file = {.name = s->name};
+  for (int key = 0; key < KEY_COUNT; key++) {
+    const schema_entry *row = schema_row((study_key)key);
+    if (!row->required || s->values[key].present)
+      continue;
+    char allowed[256];
+    schema_allowed(row, allowed, sizeof allowed);
+    return source_refuse(&file, 0, why, "missing key %s (%s)", row->path, allowed);
+  }
+  return 0;
+}
+
+static int check_floor(const study *s, const document *d, message *why) {
+  const typed_value *obstacle = &s->values[KEY_MODEL_FLOOR];
+  const double particles = s->values[KEY_MODEL_PARTICLES].numbers[0];
+  if (!obstacle->list || (double)obstacle->count == particles)
+    return 0;
+  return document_refuse(d, obstacle->node, why,
+                         "model.floor has %zu elements, expected %.0f, one per particle, or a single number",
+                         obstacle->count, particles);
+}
+
+static int refuse_restitution(const document *d, int node, const char *label, double value, message *why) {
+  char shown[32];
+  number_show(value, shown, sizeof shown);
+  return document_refuse(d, node, why, "%s = %s is not in this version: orbits of an undamped chain need restitution 1",
+                         label, shown);
+}
+
+static int check_restitution(const study *s, const document *d, message *why) {
+  const typed_value *value = &s->values[KEY_MODEL_RESTITUTION];
+  if (value->node && value->numbers[0] != 1)
+    return refuse_restitution(d, value->node, "model.restitution", value->numbers[0], why);
+  const sweep_entry *e = sweep_over(s, KEY_MODEL_RESTITUTION, -1);
+  for (size_t i = 0; e && i < e->view.points; i++)
+    if (e->values[i] != 1)
+      return refuse_restitution(d, sweep_value_node(d, e, i), "swept model.restitution", e->values[i], why);
+  return 0;
+}
+
+/* One impact of the pattern: an element of orbit.at_start or orbit.at_half. */
+typedef struct impact {
+  double particle;
+  study_key key;
+  size_t item;
+} impact;
+
+static int compare_impacts(const void *left, const void *right) {
+  const impact *a = left, *b = right;
+  if (a->particle != b->particle)
+    return a->particle < b->particle ? -1 : 1;
+  if (a->key != b->key)
+    return a->key < b->key ? -1 : 1;
+  return a->item < b->item ? -1 : a->item > b->item;
+}
+
+static bool has_floor(const study *s, size_t particle) {
+  const typed_value *obstacle = &s->values[KEY_MODEL_FLOOR];
+  const size_t item = obstacle->list ? particle : 0;
+  return obstacle->numbers[item] > -INFINITY || sweep_over(s, KEY_MODEL_FLOOR, obstacle->list ? (long)particle : -1);
+}
+
+static int refuse_particle(const study *s, const document *d, int node, const char *label, double particle,
+                           message *why) {
+  return document_refuse(d, node, why, "%s = %.0f is out of range, expected a particle from 0 to %.0f", label, particle,
+                         s->values[KEY_MODEL_PARTICLES].numbers[0] - 1);
+}
+
+/* Checks the elements of one list that no sweep moves, and appends them to the impacts. */
+static int collect_impacts(const study *s, const document *d, study_key key, impact *impacts, size_t *count,
+                           message *why) {
+  const typed_value *list = &s->values[key];
+  for (size_t i = 0; i < list->count; i++) {
+    const int node = typed_item_node(d, list, i);
+    const double particle = list->numbers[i];
+    char label[64];
+    snprintf(label, sizeof label, "%s[%zu]", schema_row(key)->path, i);
+    if (!(particle < s->values[KEY_MODEL_PARTICLES].numbers[0]))
+      return refuse_particle(s, d, node, label, particle, why);
+    if (sweep_over(s, key, (long)i))
+      continue;
+    if (!has_floor(s, (size_t)particle))
+      return document_refuse(d, node, why,
+                             "%s = %.0f has no floor to hit (model.floor is null there), expected a particle with one",
+                             label, particle);
+    impacts[(*count)++] = (impact){particle, key, i};
+  }
+  return 0;
+}
+
+static int refuse_twice(const document *d, const study *s, const impact *first, const impact *again, message *why) {
+  return document_refuse(d, typed_item_node(d, &s->values[again->key], again->item), why,
+                         "%s[%zu] = %.0f is in the pattern twice (%s[%zu] too), expected each particle at most once in "
+                         "at_start and at_half together",
+                         schema_row(again->key)->path, again->item, again->particle, schema_row(first->key)->path,
+                         first->item);
+}
+
+static int check_impacts(const study *s, const document *d, impact *impacts, message *why) {
+  size_t count = 0;
+  int code = collect_impacts(s, d, KEY_ORBIT_AT_START, impacts, &count, why);
+  if (!code)
+    code = collect_impacts(s, d, KEY_ORBIT_AT_HALF, impacts, &count, why);
+  if (code)
+    return code;
+  qsort(impacts, count, sizeof *impacts, compare_impacts);
+  for (size_t i = 1; i < count; i++)
+    if (impacts[i].particle == impacts[i - 1].particle)
+      return refuse_twice(d, s, &impacts[i - 1], &impacts[i], why);
+  return 0;
+}
+
+/* Swept indices stay in the chain; where they meet another impact, or a particle without a floor, is an outcome of
+ * that grid point. */
+static int check_swept_impacts(const study *s, const document *d, message *why) {
+  for (size_t i = 0; i < s->sweep_count; i++) {
+    const sweep_entry *e = &s->sweeps[i];
+    if (e->view.key != KEY_ORBIT_AT_START && e->view.key != KEY_ORBIT_AT_HALF)
+      continue;
+    char label[128];
+    snprintf(label, sizeof label, "swept %s", e->view.name);
+    for (size_t j = 0; j < e->view.points; j++)
+      if (!(e->values[j] < s->values[KEY_MODEL_PARTICLES].numbers[0]))
+        return refuse_particle(s, d, sweep_value_node(d, e, j), label, e->values[j], why);
+  }
+  return 0;
+}
+
+static int check_pattern(const study *s, const document *d, message *why) {
+  const size_t most = s->values[KEY_ORBIT_AT_START].count + s->values[KEY_ORBIT_AT_HALF].count;
+  if (most == 0) {
+    char place[640];
+    study_place(s, KEY_ORBIT_AT_START, place, sizeof place);
+    return refuse(why, EXIT_USAGE, "%s and orbit.at_half are both empty, expected at least one particle that hits",
+                  place);
+  }
+  impact *impacts = malloc(most * sizeof *impacts);
+  if (!impacts)
+    return refuse(why, EXIT_RUN, "%s: out of memory", s->name);
+  const int code = check_impacts(s, d, impacts, why);
+  free(impacts);
+  return code ? code : check_swept_impacts(s, d, why);
+}
+
+static int check_special_points(const study *s, const document *d, message *why) {
+  const typed_value *flag = &s->values[KEY_ORBIT_SPECIAL_POINTS];
+  const study_key over = s->sweep_count == 1 ? s->sweeps[0].view.key : KEY_COUNT;
+  if (flag->numbers[0] == 0 || over == KEY_MODEL_GAMMA || over == KEY_ORBIT_PERIOD)
+    return 0;
+  return document_refuse(d, flag->node, why,
+                         "orbit.special_points = true lists resonances and singular points along the swept parameter: "
+                         "it requires exactly one sweep entry, over model.gamma or orbit.period");
+}
+
+int study_check(const study *s, const document *d, message *why) {
+  int code = check_missing(s, why);
+  if (!code)
+    code = check_floor(s, d, why);
+  if (!code)
+    code = check_restitution(s, d, why);
+  if (!code)
+    code = check_pattern(s, d, why);
+  return code ? code : check_special_points(s, d, why);
+}

@@ -1,0 +1,60 @@
+/* The document tree of a study: libyaml's, read through the guard, with `--set` assignments applied to it, and with the
+ * origin of every node known, so that each refusal can begin with its place.
+ *
+ * Nodes are called by libyaml's index, from 1 (the root); 0 is "no node". An assignment adds nodes behind those of the
+ * file, which is how a node's index tells where it came from. */
+#ifndef RICOCHET_APP_DOCUMENT_H
+#define RICOCHET_APP_DOCUMENT_H
+
+#include <yaml.h>
+
+#include "source.h"
+
+enum { DOCUMENT_ROOT = 1 };
+
+/** The nodes that one `--set` added, and what messages about them begin with. */
+typedef struct document_assignment {
+  int first_node;
+  char *place; /* "--set path=value", shortened when very long; owned */
+} document_assignment;
+
+typedef struct document {
+  source from;
+  yaml_document_t tree;
+  document_assignment *assignments; /* [assignment_count], in order, so first_node ascends */
+  size_t assignment_count;
+} document;
+
+/** Reads a text that passes the guard and repeats no key of a mapping; keys are single words.
+ *  @param from  copied; the name in it is borrowed and must outlive the document
+ *  @returns 0, EXIT_USAGE, or EXIT_RUN when out of memory. */
+int document_read(source from, const char *text, size_t length, document **out, message *why);
+void document_destroy(document **d);
+
+/** The node; its pointer holds until the next assignment. Not const because libyaml's accessors are not. */
+yaml_node_t *document_node(const document *d, int node);
+int document_node_count(const document *d);
+
+/** Index of the pair of a mapping with this key, -1 when there is none. */
+long document_find_pair(const document *d, int mapping, const char *name, size_t length);
+/** Value of that pair, 0 when there is none. */
+int document_find(const document *d, int mapping, const char *name);
+
+/** Whether the node is a scalar with exactly this text, quoted or not. */
+bool document_is(const document *d, int node, const char *text);
+/** Whether the node is an unquoted null: nothing at all, `~`, or `null`. */
+bool document_is_null(const document *d, int node);
+
+/** Line of the node in the file, from 1; 0 when an assignment added it. */
+size_t document_line(const document *d, int node);
+/** "--set path=value" of the assignment that added the node, NULL when it stands in the file. */
+const char *document_assigned_by(const document *d, int node);
+
+/** What a node holds, for messages: `0.1x`, `"0.1" (a quoted string)`, `null`, `a list`, `a mapping`. */
+void document_show(const document *d, int node, char *text, size_t size);
+
+/** A refusal that begins with the place of the node. @returns EXIT_USAGE. */
+int document_refuse(const document *d, int node, message *why, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
+
+#endif

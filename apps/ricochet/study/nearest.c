@@ -1,0 +1,85 @@
+/* The known name nearest to a mistyped one. */
+#include "schema.h"
+
+#include <string.h>
+
+enum { LONGEST_NAME = 63 }; /* longer ones are near to no name of the table */
+
+static size_t least(size_t a, size_t b) {
+  return a < b ? a : b;
+}
+
+/* Edit distance of two names of at most LONGEST_NAME characters: insertions, deletions, replacements, and swaps of
+ * neighbours, each counting once (optimal string alignment). Row i holds the distances of the first i characters. */
+static size_t edit_distance(const char *a, const char *b) {
+  size_t table[LONGEST_NAME + 1][LONGEST_NAME + 1];
+  const size_t rows = strlen(a), columns = strlen(b);
+  for (size_t j = 0; j <= columns; j++)
+    table[0][j] = j;
+  for (size_t i = 1; i <= rows; i++) {
+    table[i][0] = i;
+    for (size_t j = 1; j <= columns; j++) {
+      const size_t replaced = table[i - 1][j - 1] + (a[i - 1] != b[j - 1]);
+      table[i][j] = least(replaced, 1 + least(table[i - 1][j], table[i][j - 1]));
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+        table[i][j] = least(table[i][j], table[i - 2][j - 2] + 1);
+    }
+  }
+  return table[rows][columns];
+}
+
+static const char *last_name(const char *path) {
+  const char *dot = strrchr(path, '.');
+  return dot ? dot + 1 : path;
+}
+
+/* Distance of two paths: of the whole, or of their last names and one more for a name in the wrong section. */
+static size_t path_distance(const char *path, const char *known) {
+  return least(edit_distance(path, known), edit_distance(last_name(path), last_name(known)) + 1);
+}
+
+typedef struct search {
+  const char *path;
+  const char *best;
+  size_t distance;
+} search;
+
+static void consider(search *s, const char *known) {
+  const size_t distance = path_distance(s->path, known);
+  if (distance < s->distance) {
+    s->best = known;
+    s->distance = distance;
+  }
+}
+
+/* Up to a third of the name may be wrong: beyond, a suggestion is a guess. */
+static search begin(const char *path) {
+  const size_t third = strlen(last_name(path)) / 3;
+  return (search){.path = path, .best = "", .distance = 1 + (third > 1 ? third : 1)};
+}
+
+static void finish(const search *s, char *near, size_t size) {
+  snprintf(near, size, "%s", s->best);
+}
+
+void schema_nearest(const char *path, char *near, size_t size) {
+  search s = begin(path);
+  if (strlen(path) <= LONGEST_NAME) {
+    for (int key = 0; key < KEY_COUNT; key++)
+      consider(&s, schema_row((study_key)key)->path);
+    for (int key = 0; key < SWEEP_KEY_COUNT; key++)
+      consider(&s, schema_sweep_row((sweep_key)key)->path);
+    consider(&s, "model");
+    consider(&s, "orbit");
+    consider(&s, "sweep");
+  }
+  finish(&s, near, size);
+}
+
+void schema_nearest_parameter(const char *path, char *near, size_t size) {
+  search s = begin(path);
+  for (int key = 0; key < KEY_COUNT && strlen(path) <= LONGEST_NAME; key++)
+    if (schema_row((study_key)key)->sweep)
+      consider(&s, schema_row((study_key)key)->path);
+  finish(&s, near, size);
+}

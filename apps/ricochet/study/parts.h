@@ -1,0 +1,43 @@
+/* The inside of a study, for the files of this room: how one is read is spread over them.
+ *
+ * study_parse reads the tree (document.h), applies `--set` (assignment.h), reads each key against its row (typed.h),
+ * then the sweeps (sweep.c), then checks what concerns several keys at once (check.c), and keeps the values; the tree
+ * goes when the study is complete. */
+#ifndef RICOCHET_APP_PARTS_H
+#define RICOCHET_APP_PARTS_H
+
+#include "document.h"
+#include "study.h"
+#include "typed.h"
+
+typedef struct sweep_entry {
+  study_sweep view;           /* what study_sweep_at shows; its values are the array below */
+  double *values;             /* [view.points], owned */
+  uint64_t stride;            /* tasks between two values: the product of the points of all later sweeps */
+  int nodes[SWEEP_KEY_COUNT]; /* values of its keys in the document while there is one; 0 where not given */
+} sweep_entry;
+
+struct study {
+  char *name, *text;
+  typed_value values[KEY_COUNT];
+  sweep_entry sweeps[STUDY_MAX_SWEEPS];
+  size_t sweep_count;
+  uint64_t tasks, digest;
+};
+
+/** Refuses a key that the section does not know, naming the nearest or all. @param section  "" for the top level. */
+int refuse_unknown_key(const document *d, int key, const char *section, message *why);
+
+/** Reads `sweep`, one entry or a list of them, and gives omitted swept keys their first value. @param node  0: none. */
+int sweep_read(study *s, const document *d, int node, message *why);
+/** The sweep over an element of a key (item -1: over a scalar), NULL when there is none. */
+const sweep_entry *sweep_over(const study *s, study_key key, long item);
+/** Node that says value `i` of a sweep. */
+int sweep_value_node(const document *d, const sweep_entry *e, size_t i);
+
+/** Checks what concerns several keys at once: missing keys, lengths of lists, the pattern, swept values. */
+int study_check(const study *s, const document *d, message *why);
+
+uint64_t study_compute_digest(const study *s);
+
+#endif

@@ -1,0 +1,96 @@
+/* The study-file reference, printed from the schema table. */
+#include "schema.h"
+
+#include "study.h"
+
+static void print_default(FILE *out, const schema_entry *row) {
+  if (row->required)
+    fprintf(out, "required");
+  else if (!row->fallback || !*row->fallback)
+    fprintf(out, "none");
+  else
+    fprintf(out, "`%s`", row->fallback);
+}
+
+static void print_rows_head(FILE *out, bool sweepable) {
+  fprintf(out, "| key | allowed | default |%s meaning |\n", sweepable ? " can be swept |" : "");
+  fprintf(out, "|---|---|---|%s---|\n", sweepable ? "---|" : "");
+}
+
+static void print_row(FILE *out, const schema_entry *row, const char *name) {
+  char allowed[256];
+  schema_allowed(row, allowed, sizeof allowed);
+  fprintf(out, "| `%s` | %s | ", name, allowed);
+  print_default(out, row);
+  fprintf(out, " | ");
+}
+
+static void print_key(FILE *out, const schema_entry *row) {
+  print_row(out, row, row->path);
+  if (row->sweep)
+    fprintf(out, "%s", !row->list ? "yes" : row->scalar ? "yes, or an element" : "an element");
+  else
+    fprintf(out, "no: %s", row->no_sweep);
+  fprintf(out, " | %s |\n", row->doc);
+}
+
+static void print_rules(FILE *out) {
+  fprintf(
+      out,
+      "# Study files\n\n"
+      "A study is a YAML file: a model, what to compute, and the parameters that are swept. Reading is strict: what "
+      "is not\ndescribed here is refused with the file, the line, the key, the value received and what is "
+      "allowed, and nothing runs.\n\n"
+      "- Numbers are decimal (`0.1`, `-2`, `5e-3`) or multiples of pi (`1.5 pi`, `pi`, `-0.25 pi`). Infinities, NaN, "
+      "quoted\n  numbers and trailing characters are not numbers.\n"
+      "- Integers may be written in any of these ways as long as the value is integral: `1e6`.\n"
+      "- Flags are `true` or `false`; `yes` and `on` are not flags.\n"
+      "- `null` in `model.floor` means no obstacle: for all particles, or for one in a list.\n"
+      "- Indices of particles and list elements count from 0.\n"
+      "- Unknown keys, duplicate keys, anchors, aliases, tags, a second document, more than %d levels of nesting, and "
+      "files\n  over %d MiB are refused.\n"
+      "- `--set path=value` on the command line replaces or adds a value before anything is checked: "
+      "`--set model.gamma=0.1`,\n  `--set 'orbit.at_start=[1, 2]'`, `--set sweep[0].points=5`.\n\n",
+      STUDY_MAX_DEPTH, STUDY_MAX_BYTES >> 20);
+}
+
+static void print_sweeps(FILE *out) {
+  fprintf(
+      out,
+      "\n## Sweeps\n\n"
+      "`sweep` is one entry or a list of up to %d. Several span a grid, whose last entry varies fastest; the grid "
+      "has fewer than\n2^40 points. A swept key may be left out of its section. An element of a list is swept by its "
+      "index, as in\n`model.floor[3]`, and must stand in the list. An entry gives either `values`, or `from`, `to` "
+      "and `points`.\n\n",
+      STUDY_MAX_SWEEPS);
+  print_rows_head(out, false);
+  for (int key = 0; key < SWEEP_KEY_COUNT; key++) {
+    const schema_entry *row = schema_sweep_row((sweep_key)key);
+    print_row(out, row, row->path + sizeof "sweep." - 1);
+    fprintf(out, "%s |\n", row->doc);
+  }
+}
+
+static void print_later_words(FILE *out, const schema_entry *row) {
+  fprintf(out, "- `%s`: ", row->path);
+  for (const char *c = row->later_words; *c; c++)
+    if (*c == '|')
+      fprintf(out, ", ");
+    else
+      fputc(*c, out);
+  fputc('\n', out);
+}
+
+void schema_reference(FILE *out) {
+  print_rules(out);
+  fprintf(out, "## Keys\n\n");
+  print_rows_head(out, true);
+  for (int key = 0; key < KEY_COUNT; key++)
+    print_key(out, schema_row((study_key)key));
+  print_sweeps(out);
+  fprintf(out, "\n## Words of a later version\n\nRefused with \"not in this version\":\n\n");
+  for (int key = 0; key < KEY_COUNT; key++)
+    if (schema_row((study_key)key)->later_words)
+      print_later_words(out, schema_row((study_key)key));
+  fprintf(out, "- the sections `start`, `time` and `iterate`\n");
+}

@@ -1,0 +1,340 @@
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "number.h"
+#include "parts.h"
+
+static const uint64_t too_many_tasks = (uint64_t)1 << 40;
+
+/* An entry being read. */
+typedef struct reading {
+  study *s;
+  const document *d;
+  int node;                  /* the entry's mapping */
+  char label[24];            /* "sweep[1]", or "sweep" when it is no list */
+  int keys[SWEEP_KEY_COUNT]; /* nodes of the keys themselves */
+  sweep_entry *e;
+  message *why;
+} reading;
+
+static bool given(const reading *r, sweep_key key) {
+  return r->e->nodes[key] != 0;
+}
+
+static int no_memory(const reading *r) {
+  return refuse(r->why, EXIT_RUN, "%s: out of memory", r->s->name);
+}
+
+static const char *short_name(sweep_key key) {
+  return schema_sweep_row(key)->path + sizeof "sweep." - 1;
+}
+
+static int find_keys(reading *r) {
+  const yaml_node_t *n = document_node(r->d, r->node);
+  if (n->type != YAML_MAPPING_NODE) {
+    char held[128];
+    document_show(r->d, r->node, held, sizeof held);
+    return document_refuse(r->d, r->node, r->why, "%s = %s, expected a mapping with the keys of a sweep", r->label,
+                           held);
+  }
+  for (const yaml_node_pair_t *pair = n->data.mapping.pairs.start; pair < n->data.mapping.pairs.top; pair++) {
+    int key = 0;
+    while (key < SWEEP_KEY_COUNT && !document_is(r->d, pair->key, short_name((sweep_key)key)))
+      key++;
+    if (key == SWEEP_KEY_COUNT)
+      return refuse_unknown_key(r->d, pair->key, "sweep", r->why);
+    r->e->nodes[key] = pair->value;
+    r->keys[key] = pair->key;
+  }
+  return 0;
+}
+
+static int read_key(const reading *r, sweep_key key, typed_value *value) {
+  char label[64];
+  snprintf(label, sizeof label, "%s.%s", r->label, short_name(key));
+  return typed_read(r->d, r->keys[key], r->e->nodes[key], schema_sweep_row(key), label, value, r->why);
+}
+
+static int read_number(const reading *r, sweep_key key, double *number) {
+  typed_value value = {0};
+  const int code = read_key(r, key, &value);
+  if (!code)
+    *number = value.numbers[0];
+  typed_clear(&value);
+  return code;
+}
+
+/* Splits "model.floor[3]" into key path and item; item -1 without an index, -2 for a malformed or huge one. */
+static long split_parameter(const char *text, char *path, size_t size) {
+  const size_t length = strcspn(text, "[");
+  snprintf(path, size, "%.*s", (int)(length < size ? length : size - 1), text);
+  if (!text[length])
+    return -1;
+  const char *digits = text + length + 1;
+  const size_t count = strspn(digits, "0123456789");
+  if (count == 0 || count > 9 || strcmp(digits + count, "]") != 0)
+    return -2;
+  return strtol(digits, NULL, 10);
+}
+
+static int refuse_parameter(const reading *r, const char *name, const char *path) {
+  const int node = r->e->nodes[SWEEP_PARAMETER];
+  char near[64], shown[80], section[16];
+  source_quote(name, strlen(name), shown, sizeof shown);
+  snprintf(section, sizeof section, "%.*s", (int)strcspn(path, "."), path);
+  if (schema_is_later_section(section))
+    return document_refuse(r->d, node, r->why, "%s.parameter = %s is not in this version: the section '%s' is not",
+                           r->label, shown, section);
+  schema_nearest_parameter(path, near, sizeof near);
+  if (*near)
+    return document_refuse(r->d, node, r->why, "unknown sweep parameter '%s'; did you mean '%s'?", shown, near);
+  return document_refuse(r->d, node, r->why,
+                         "unknown sweep parameter '%s', expected a number of model or orbit such as model.gamma",
+                         shown);
+}
+
+/* A parameter must name one number: a scalar by its key, an element of a list by its index. */
+static int check_item(const reading *r, const schema_entry *row, long item) {
+  const typed_value *value = &r->s->values[r->e->view.key];
+  const int node = r->e->nodes[SWEEP_PARAMETER];
+  const char *path = row->path;
+  if (!value->list)
+    return item == -1 ? 0
+                      : document_refuse(r->d, node, r->why,
+                                        "%s.parameter = %s, but %s is a single number here: sweep %s without an index, "
+                                        "or give a list",
+                                        r->label, r->e->view.name, path, path);
+  if (value->count == 0)
+    return document_refuse(r->d, node, r->why, "%s.parameter = %s, but %s is an empty list: give the elements to sweep",
+                           r->label, r->e->view.name, path);
+  if (item == -1)
+    return document_refuse(r->d, node, r->why,
+                           "%s.parameter = %s, but %s is a list: sweep one element by its index, such as %s[0]",
+                           r->label, path, path, path);
+  if (!(item >= 0 && (size_t)item < value->count))
+    return document_refuse(r->d, node, r->why,
+                           "%s.parameter = %s, but %s has %zu elements: expected an index from 0 to %zu", r->label,
+                           r->e->view.name, path, value->count, value->count - 1);
+  return 0;
+}
+
+static int find_parameter(const reading *r, const char *name) {
+  char path[64];
+  const long item = split_parameter(name, path, sizeof path);
+  const study_key key = schema_find(path);
+  const int node = r->e->nodes[SWEEP_PARAMETER];
+  if (key == KEY_COUNT)
+    return refuse_parameter(r, name, path);
+  const schema_entry *row = schema_row(key);
+  if (!row->sweep)
+    return document_refuse(r->d, node, r->why, "%s.parameter = %s cannot be swept: %s", r->label, path, row->no_sweep);
+  if (item >= 0)
+    snprintf(r->e->view.name, sizeof r->e->view.name, "%s[%ld]", path, item);
+  else
+    snprintf(r->e->view.name, sizeof r->e->view.name, "%s", name);
+  r->e->view.key = key;
+  r->e->view.item = item;
+  const int code = check_item(r, row, item);
+  if (code)
+    return code;
+  const sweep_entry *other = sweep_over(r->s, key, item);
+  return !other
+             ? 0
+             : document_refuse(r->d, node, r->why, "%s.parameter = %s is swept twice, expected once", r->label, name);
+}
+
+static int read_parameter(const reading *r) {
+  if (!given(r, SWEEP_PARAMETER))
+    return document_refuse(r->d, r->node, r->why, "missing key %s.parameter (the key to sweep, such as model.gamma)",
+                           r->label);
+  typed_value value = {0};
+  int code = read_key(r, SWEEP_PARAMETER, &value);
+  if (!code)
+    code = find_parameter(r, value.text);
+  typed_clear(&value);
+  return code;
+}
+
+static int read_list(const reading *r) {
+  for (sweep_key key = SWEEP_FROM; key < SWEEP_KEY_COUNT; key++)
+    if (given(r, key))
+      return document_refuse(r->d, r->keys[key], r->why,
+                             "%s has both values and %s, expected either values, or from, to and points", r->label,
+                             short_name(key));
+  typed_value value = {0};
+  int code = read_key(r, SWEEP_VALUES, &value);
+  if (!code && value.count == 0)
+    code = document_refuse(r->d, value.node, r->why, "%s.values is empty, expected a list of one number or more",
+                           r->label);
+  if (!code) {
+    r->e->view.points = value.count;
+    r->e->values = value.numbers;
+    value.numbers = NULL;
+  }
+  typed_clear(&value);
+  return code;
+}
+
+typedef struct range {
+  double from, to;
+  size_t points;
+  bool log;
+} range;
+
+/* Both ends are met exactly, whatever rounding does in between. */
+static double range_value(const range *g, size_t i) {
+  if (i == 0 || g->points == 1)
+    return g->from;
+  if (i == g->points - 1)
+    return g->to;
+  const double steps = (double)(g->points - 1);
+  if (g->log)
+    return exp(log(g->from) + (double)i * (log(g->to) - log(g->from)) / steps);
+  return g->from + (double)i * (g->to - g->from) / steps;
+}
+
+static int check_range(const reading *r, const range *g) {
+  char from[32], to[32];
+  number_show(g->from, from, sizeof from);
+  number_show(g->to, to, sizeof to);
+  if (!(g->from <= g->to))
+    return document_refuse(r->d, r->keys[SWEEP_FROM], r->why, "%s: reversed range from %s to %s, expected from <= to",
+                           r->label, from, to);
+  if (g->from == g->to && g->points != 1)
+    return document_refuse(r->d, r->keys[SWEEP_POINTS], r->why,
+                           "%s: empty range from %s to %s with %zu points, expected from < to, or points: 1", r->label,
+                           from, to, g->points);
+  if (g->from < g->to && g->points == 1)
+    return document_refuse(r->d, r->keys[SWEEP_POINTS], r->why,
+                           "%s: 1 point cannot span the range from %s to %s, expected points >= 2, or from equal to to",
+                           r->label, from, to);
+  if (g->log && !(g->from > 0))
+    return document_refuse(r->d, r->keys[SWEEP_FROM], r->why, "%s.from = %s with scale: log, expected a number > 0",
+                           r->label, from);
+  return 0;
+}
+
+static int read_range_keys(const reading *r, range *g) {
+  for (sweep_key key = SWEEP_FROM; key <= SWEEP_POINTS; key++) {
+    char allowed[128];
+    schema_allowed(schema_sweep_row(key), allowed, sizeof allowed);
+    if (!given(r, key))
+      return document_refuse(r->d, r->node, r->why,
+                             "missing key %s.%s (%s): a sweep takes either values, or from, to and points", r->label,
+                             short_name(key), allowed);
+  }
+  double points = 0;
+  int code = read_number(r, SWEEP_FROM, &g->from);
+  if (!code)
+    code = read_number(r, SWEEP_TO, &g->to);
+  if (!code)
+    code = read_number(r, SWEEP_POINTS, &points);
+  if (!code && given(r, SWEEP_SCALE)) {
+    typed_value scale = {0};
+    code = read_key(r, SWEEP_SCALE, &scale);
+    g->log = !code && strcmp(scale.text, "log") == 0;
+    typed_clear(&scale);
+  }
+  g->points = (size_t)points;
+  return code;
+}
+
+static int read_range(const reading *r) {
+  range g = {0};
+  int code = read_range_keys(r, &g);
+  if (!code)
+    code = check_range(r, &g);
+  if (code)
+    return code;
+  r->e->values = malloc(g.points * sizeof *r->e->values);
+  if (!r->e->values)
+    return no_memory(r);
+  r->e->view.points = g.points;
+  for (size_t i = 0; i < g.points; i++)
+    r->e->values[i] = range_value(&g, i);
+  return 0;
+}
+
+/* Gives an omitted key what its sweep says first, as if it stood in the study. */
+static int supply_value(const reading *r) {
+  typed_value *value = &r->s->values[r->e->view.key];
+  if (value->node)
+    return 0;
+  const char *assigned = document_assigned_by(r->d, r->e->nodes[SWEEP_PARAMETER]);
+  typed_clear(value);
+  *value = (typed_value){.present = true, .count = 1, .line = document_line(r->d, r->keys[SWEEP_PARAMETER])};
+  value->numbers = calloc(1, sizeof *value->numbers);
+  value->assigned = assigned ? strdup(assigned) : NULL;
+  if (!value->numbers || (assigned && !value->assigned))
+    return no_memory(r);
+  value->numbers[0] = r->e->values[0];
+  return 0;
+}
+
+static int read_entry(reading *r) {
+  int code = find_keys(r);
+  if (!code)
+    code = read_parameter(r);
+  if (!code)
+    code = given(r, SWEEP_VALUES) ? read_list(r) : read_range(r);
+  if (code)
+    return code;
+  r->e->view.values = r->e->values;
+  char label[128];
+  snprintf(label, sizeof label, "swept %s", r->e->view.name);
+  for (size_t i = 0; i < r->e->view.points && !code; i++)
+    code =
+        typed_check(r->d, sweep_value_node(r->d, r->e, i), schema_row(r->e->view.key), label, r->e->values[i], r->why);
+  return code ? code : supply_value(r);
+}
+
+static int count_tasks(study *s, const document *d, int node, message *why) {
+  s->tasks = 1;
+  for (size_t i = s->sweep_count; i-- > 0;) {
+    s->sweeps[i].stride = s->tasks;
+    if (s->sweeps[i].view.points > (too_many_tasks - 1) / s->tasks)
+      return document_refuse(d, node, why, "the sweeps span %.3g grid points or more, expected fewer than 2^40",
+                             (double)s->sweeps[i].view.points * (double)s->tasks);
+    s->tasks *= s->sweeps[i].view.points;
+  }
+  return 0;
+}
+
+static int read_entries(study *s, const document *d, int node, message *why) {
+  const yaml_node_t *n = document_node(d, node);
+  const bool list = n->type == YAML_SEQUENCE_NODE;
+  const size_t count = list ? (size_t)(n->data.sequence.items.top - n->data.sequence.items.start) : 1;
+  if (count < 1 || count > STUDY_MAX_SWEEPS)
+    return document_refuse(d, node, why, "sweep has %zu entries, expected from 1 to %d", count, STUDY_MAX_SWEEPS);
+  for (size_t i = 0; i < count; i++) {
+    reading r = {.s = s, .d = d, .node = list ? n->data.sequence.items.start[i] : node, .e = &s->sweeps[i], .why = why};
+    if (list)
+      snprintf(r.label, sizeof r.label, "sweep[%zu]", i);
+    else
+      snprintf(r.label, sizeof r.label, "sweep");
+    const int code = read_entry(&r);
+    if (code)
+      return code;
+    s->sweep_count = i + 1;
+  }
+  return 0;
+}
+
+int sweep_read(study *s, const document *d, int node, message *why) {
+  const int code = node ? read_entries(s, d, node, why) : 0;
+  return code ? code : count_tasks(s, d, node, why);
+}
+
+const sweep_entry *sweep_over(const study *s, study_key key, long item) {
+  for (size_t i = 0; i < s->sweep_count; i++)
+    if (s->sweeps[i].view.key == key && s->sweeps[i].view.item == item)
+      return &s->sweeps[i];
+  return NULL;
+}
+
+int sweep_value_node(const document *d, const sweep_entry *e, size_t i) {
+  if (e->nodes[SWEEP_VALUES])
+    return document_node(d, e->nodes[SWEEP_VALUES])->data.sequence.items.start[i];
+  return i == 0 ? e->nodes[SWEEP_FROM] : i == e->view.points - 1 ? e->nodes[SWEEP_TO] : e->nodes[SWEEP_POINTS];
+}

@@ -1,0 +1,92 @@
+/* The sentences about the schema: what an entry allows, and which names a section knows. */
+#include "schema.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <string.h>
+
+#include "study.h"
+
+static void append(char *text, size_t size, const char *format, ...) __attribute__((format(printf, 3, 4)));
+
+static void append(char *text, size_t size, const char *format, ...) {
+  const size_t used = strlen(text);
+  va_list arguments;
+  va_start(arguments, format);
+  vsnprintf(text + used, size - used, format, arguments);
+  va_end(arguments);
+}
+
+static void append_range(const schema_entry *entry, char *text, size_t size) {
+  const bool low = isfinite(entry->low), high = isfinite(entry->high);
+  if (low && high && !entry->low_open && !entry->high_open) {
+    append(text, size, " from %.15g to %.15g", entry->low, entry->high);
+    return;
+  }
+  if (low)
+    append(text, size, entry->low_open ? " > %.15g" : " >= %.15g", entry->low);
+  if (high)
+    append(text, size, "%s%s %.15g", low ? " and" : "", entry->high_open ? " <" : " <=", entry->high);
+}
+
+static void append_words(const schema_entry *entry, char *text, size_t size) {
+  if (strchr(entry->words, '|'))
+    append(text, size, "one of ");
+  for (const char *word = entry->words; *word;) {
+    const size_t length = strcspn(word, "|");
+    append(text, size, "%.*s%s", (int)length, word, word[length] ? ", " : "");
+    word += length + (word[length] == '|');
+  }
+}
+
+void schema_allowed_item(const schema_entry *entry, char *text, size_t size) {
+  *text = 0;
+  switch (entry->type) {
+  case VALUE_NUMBER:
+  case VALUE_INTEGER:
+    append(text, size, entry->type == VALUE_NUMBER ? "a number" : "an integer");
+    append_range(entry, text, size);
+    break;
+  case VALUE_FLAG:
+    append(text, size, entry->later ? "false" : "true or false");
+    break;
+  case VALUE_WORD:
+    append_words(entry, text, size);
+    break;
+  case VALUE_TEXT:
+    append(text, size, "text");
+    break;
+  }
+  if (entry->null)
+    append(text, size, " or null");
+}
+
+void schema_allowed(const schema_entry *entry, char *text, size_t size) {
+  if (entry->scalar) {
+    schema_allowed_item(entry, text, size);
+    append(text, size, "%s", entry->list ? ", or a list of them" : "");
+    return;
+  }
+  *text = 0;
+  append(text, size, "a list of %s", entry->type == VALUE_INTEGER ? "integers" : "numbers");
+  append_range(entry, text, size);
+}
+
+static void append_name(const char *section, const char *path, char *text, size_t size) {
+  const size_t length = strlen(section);
+  const char *name = length ? path + length + 1 : path;
+  const bool inside = length ? strncmp(path, section, length) == 0 && path[length] == '.' : !strchr(path, '.');
+  if (inside)
+    append(text, size, "%s%s", *text ? ", " : "", name);
+}
+
+void schema_names(const char *section, char *text, size_t size) {
+  *text = 0;
+  for (int key = 0; key < KEY_COUNT; key++)
+    append_name(section, schema_row((study_key)key)->path, text, size);
+  for (int key = 0; key < SWEEP_KEY_COUNT; key++)
+    append_name(section, schema_sweep_row((sweep_key)key)->path, text, size);
+  append_name(section, "model", text, size);
+  append_name(section, "orbit", text, size);
+  append_name(section, "sweep", text, size);
+}

@@ -1,0 +1,49 @@
+/* A kind of study: how its results are laid out, and how one task is evaluated.
+ *
+ * The evaluation of a task is a function of the study's values alone: it knows no rank, no file and no order, so a
+ * sweep gives the same bits however it is spread. Tasks that fail are rows with their outcome and reason. */
+#ifndef RICOCHET_APP_KIND_H
+#define RICOCHET_APP_KIND_H
+
+#include <ricochet/ricochet.h>
+#include <stdint.h>
+
+#include "../study/study.h"
+#include "table.h"
+
+/** What a study will take and give. */
+typedef struct kind_plan {
+  table rows;          /* a row per task */
+  double memory;       /* bytes that one rank computes with */
+  const char *outcome; /* name of the column whose words are counted at the end */
+} kind_plan;
+
+/** Evaluates tasks; one per rank. */
+typedef struct worker worker;
+
+/** Rows of a table that belongs to the study as a whole. */
+typedef struct extra_rows {
+  table layout;
+  uint64_t count;
+  unsigned char *rows; /* [count][layout.row_bytes], freed by the caller */
+} extra_rows;
+
+typedef struct kind {
+  const char *name;
+  /** Lays out the results; refuses a study that cannot work or cannot fit (0 or EXIT_USAGE). */
+  int (*plan)(const study *s, kind_plan *plan, message *why);
+  /** @param poll  handed to the library; non-zero stops a task */
+  int (*open)(const study *s, ric_poll poll, worker **out, message *why);
+  /** Fills the row of a task. @returns 0, or -1 when the poll stopped it. */
+  int (*evaluate)(worker *w, const table *layout, uint64_t task, unsigned char *row);
+  void (*close)(worker **w);
+  /** The study's extra table; a count of 0 and no columns when there is none. */
+  int (*extra)(const study *s, extra_rows *extra, message *why);
+} kind;
+
+/** Kind of a study; every kind that the schema accepts is here. */
+const kind *kind_of(const study *s);
+
+extern const kind kind_orbits;
+
+#endif

@@ -1,0 +1,37 @@
+/* _SC_PHYS_PAGES is not in POSIX. */
+#define _DEFAULT_SOURCE
+#include "machine.h"
+
+#include <libgen.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/statvfs.h>
+#include <unistd.h>
+
+double machine_memory(void) {
+  long pages = sysconf(_SC_PHYS_PAGES), bytes = sysconf(_SC_PAGESIZE);
+  return pages > 0 && bytes > 0 ? (double)pages * (double)bytes : INFINITY;
+}
+
+double machine_disk(const char *path) {
+  struct statvfs disk;
+  char *copy = strdup(path);
+  double bytes = INFINITY;
+  if (copy && statvfs(dirname(copy), &disk) == 0)
+    bytes = (double)disk.f_bavail * (double)disk.f_frsize;
+  free(copy);
+  return bytes;
+}
+
+const char *machine_size(double bytes, char *text, size_t size) {
+  static const char *const units[] = {"B", "kB", "MB", "GB", "TB", "PB"};
+  size_t u = 0;
+  while (bytes >= 999.5 && u + 1 < sizeof units / sizeof *units) {
+    bytes /= 1000;
+    u++;
+  }
+  snprintf(text, size, "%.3g %s", bytes, units[u]);
+  return text;
+}

@@ -1,0 +1,273 @@
+/* kind: orbits. The orbit of a pattern at every grid point. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "chain_model.h"
+#include "kind.h"
+#include "machine.h"
+#include "orbits_special.h"
+
+static const char *const outcome_names[] = {
+#define X(name, text) text,
+    RIC_OUTCOME_LIST(X)
+#undef X
+};
+
+struct worker {
+  study_values *values;
+  chain_model model;
+  ric_pattern *pattern;
+  int pattern_varies; /* an element of at_start or at_half is swept */
+  ric_orbit_solver *solver;
+  ric_orbit orbit;
+};
+
+/* The columns, in the order of the schema page. */
+static void lay_out(const study_values *v, table *t) {
+  size_t n = (size_t)value_number(v, KEY_MODEL_PARTICLES, 0);
+  size_t m = value_count(v, KEY_ORBIT_AT_START) + value_count(v, KEY_ORBIT_AT_HALF);
+  const column columns[] = {
+      {.name = "outcome",
+       .type = COLUMN_ENUM,
+       .extent = 1,
+       .names = outcome_names,
+       .name_count = RIC_OUTCOME_COUNT,
+       .units = "1",
+       .long_name = "outcome of the orbit",
+       .source = "[JAP] (9)"},
+      {.name = "reason",
+       .type = COLUMN_TEXT,
+       .extent = 1,
+       .text_bytes = RIC_REASON_BYTES,
+       .units = "1",
+       .long_name = "which particle, when, by how much",
+       .source = "[JAP] (9)"},
+      {.name = "q",
+       .type = COLUMN_F64,
+       .axis = "particle",
+       .extent = n,
+       .units = "1",
+       .long_name = "position at t = 0+",
+       .source = "[JAP] (7)-(8)"},
+      {.name = "v",
+       .type = COLUMN_F64,
+       .axis = "particle",
+       .extent = n,
+       .units = "1",
+       .long_name = "velocity at t = 0+",
+       .source = "[JAP] (7)-(8)"},
+      {.name = "impulse",
+       .type = COLUMN_F64,
+       .axis = "impact",
+       .extent = m,
+       .units = "1",
+       .long_name = "velocity jump of each impact, at_start then at_half",
+       .source = "[JAP] (3)"},
+      {.name = "energy",
+       .type = COLUMN_F64,
+       .extent = 1,
+       .units = "1",
+       .long_name = "total energy",
+       .source = "[JAP] (1)"},
+      {.name = "residual",
+       .type = COLUMN_F64,
+       .extent = 1,
+       .units = "1",
+       .long_name = "largest violation of the orbit's equations",
+       .source = "[JAP] (7)-(8)"},
+      {.name = "clearance",
+       .type = COLUMN_F64,
+       .extent = 1,
+       .units = "1",
+       .long_name = "smallest gap of the particles that the pattern leaves free",
+       .source = "[JAP] (9)"},
+      {.name = "clearance_time",
+       .type = COLUMN_F64,
+       .extent = 1,
+       .units = "1",
+       .long_name = "time of the smallest gap, in [0, T/2]",
+       .source = "[JAP] (9)"},
+      {.name = "clearance_particle",
+       .type = COLUMN_I64,
+       .extent = 1,
+       .units = "1",
+       .long_name = "particle of the smallest gap, -1 when every particle is in the pattern",
+       .source = "[JAP] (9)"},
+      {.name = "condition",
+       .type = COLUMN_F64,
+       .extent = 1,
+       .units = "1",
+       .long_name = "condition number of the equations solved",
+       .source = "[JAP] (11)"},
+      {.name = "mode",
+       .type = COLUMN_I64,
+       .extent = 1,
+       .units = "1",
+       .long_name = "resonant mode of the outcomes grazing and resonant, else -1",
+       .source = "[JAP] (12)"},
+      {.name = "harmonic",
+       .type = COLUMN_I64,
+       .extent = 1,
+       .units = "1",
+       .long_name = "oscillations of that mode per period, else 0",
+       .source = "[JAP] (12)"},
+  };
+  *t = (table){.group = "orbits", .row_axis = "task"};
+  for (size_t i = 0; i < sizeof columns / sizeof *columns; i++) {
+    const char *axis = columns[i].axis;
+    if (axis && strcmp(axis, "particle") == 0 && !value_flag(v, KEY_ORBIT_STATES))
+      continue;
+    t->columns[t->column_count++] = columns[i];
+  }
+  table_lay_out(t);
+}
+
+static ric_orbit_method method_of(const study_values *v) {
+  return strcmp(value_word(v, KEY_ORBIT_METHOD), "dense") == 0 ? RIC_METHOD_DENSE : RIC_METHOD_IMPULSE;
+}
+
+/* Refuses before anything large is allocated: four state arrays alone are 32 bytes per particle. */
+static int refuse_size(const study *s, double bytes, message *why) {
+  char place[256], needed[32], there[32];
+  if (bytes <= machine_memory())
+    return 0;
+  study_place(s, KEY_MODEL_PARTICLES, place, sizeof place);
+  return refuse(why, EXIT_USAGE,
+                "%s: an orbit of this size needs %s of memory, expected at most the %s of this machine", place,
+                machine_size(bytes, needed, sizeof needed), machine_size(machine_memory(), there, sizeof there));
+}
+
+static int plan_memory(const study *s, const study_values *v, kind_plan *plan, message *why) {
+  chain_model model = {0};
+  ric_pattern *pattern = NULL;
+  ric_error error;
+  int code = refuse_size(s, 33 * value_number(v, KEY_MODEL_PARTICLES, 0) + (double)plan->rows.row_bytes, why);
+  if (code)
+    return code;
+  if (chain_model_init(&model, v) != 0)
+    code = refuse(why, EXIT_RUN, "%s: no memory for the floors", study_name(s));
+  else if (chain_model_pattern(v, &pattern, &error) == RIC_OK) {
+    plan->memory = ric_orbit_bytes(&model.chain, pattern, method_of(v)) + 2 * (double)plan->rows.row_bytes;
+    code = refuse_size(s, plan->memory, why);
+  }
+  ric_pattern_destroy(&pattern);
+  chain_model_clear(&model);
+  return code;
+}
+
+static int refuse_dense(const study *s, const study_values *v, message *why) {
+  char place[256];
+  double n = value_number(v, KEY_MODEL_PARTICLES, 0);
+  if (method_of(v) != RIC_METHOD_DENSE || n <= RIC_DENSE_PARTICLES)
+    return 0;
+  study_place(s, KEY_ORBIT_METHOD, place, sizeof place);
+  return refuse(why, EXIT_USAGE, "%s = dense with %.0f particles, expected at most %d (or method: impulse)", place, n,
+                RIC_DENSE_PARTICLES);
+}
+
+static int orbits_plan(const study *s, kind_plan *plan, message *why) {
+  study_values *v = study_values_create(s);
+  if (!v)
+    return refuse(why, EXIT_RUN, "%s: no memory for the values of a task", study_name(s));
+  *plan = (kind_plan){.outcome = "outcome"};
+  lay_out(v, &plan->rows);
+  int code = refuse_dense(s, v, why);
+  if (!code)
+    code = plan_memory(s, v, plan, why);
+  if (!code)
+    code = orbits_special_plan(s, v, why);
+  study_values_destroy(&v);
+  return code;
+}
+
+static void orbits_close(worker **w) {
+  if (!w || !*w)
+    return;
+  ric_orbit_clear(&(*w)->orbit);
+  ric_orbit_solver_destroy(&(*w)->solver);
+  ric_pattern_destroy(&(*w)->pattern);
+  chain_model_clear(&(*w)->model);
+  study_values_destroy(&(*w)->values);
+  free(*w);
+  *w = NULL;
+}
+
+static int sweeps_pattern(const study *s) {
+  for (size_t i = 0; i < study_sweeps(s); i++) {
+    study_key key = study_sweep_at(s, i)->key;
+    if (key == KEY_ORBIT_AT_START || key == KEY_ORBIT_AT_HALF)
+      return 1;
+  }
+  return 0;
+}
+
+static int orbits_open(const study *s, ric_poll poll, worker **out, message *why) {
+  worker *w = calloc(1, sizeof *w);
+  ric_error error = {0};
+  *out = w;
+  if (!w || !(w->values = study_values_create(s)) || chain_model_init(&w->model, w->values) != 0) {
+    orbits_close(out);
+    return refuse(why, EXIT_RUN, "%s: no memory for a task", study_name(s));
+  }
+  size_t m = value_count(w->values, KEY_ORBIT_AT_START) + value_count(w->values, KEY_ORBIT_AT_HALF);
+  ric_orbit_options options = ric_orbit_options_default();
+  options.method = method_of(w->values);
+  options.poll = poll;
+  w->pattern_varies = sweeps_pattern(s);
+  ric_status status = ric_orbit_solver_create(&options, &w->solver, &error);
+  if (status == RIC_OK)
+    status = ric_orbit_init(&w->orbit, w->model.chain.particles, m, &error);
+  if (status == RIC_OK && !w->pattern_varies)
+    status = chain_model_pattern(w->values, &w->pattern, &error);
+  if (status == RIC_OK)
+    return 0;
+  orbits_close(out);
+  return refuse(why, EXIT_RUN, "%s: %s", study_name(s), error.message);
+}
+
+static ric_status solve(worker *w, ric_error *error) {
+  if (w->pattern_varies) {
+    ric_pattern_destroy(&w->pattern);
+    RIC_TRY(chain_model_pattern(w->values, &w->pattern, error));
+  }
+  return ric_orbit_solve(w->solver, &w->model.chain, w->pattern, value_number(w->values, KEY_ORBIT_PERIOD, 0),
+                         &w->orbit, error);
+}
+
+static void fill_row(const ric_orbit *o, const table *t, unsigned char *row) {
+  memset(row, 0, t->row_bytes);
+  row_put_word(row, table_column(t, "outcome"), (int)o->outcome);
+  row_put_text(row, table_column(t, "reason"), o->reason);
+  row_put_numbers(row, table_column(t, "q"), o->q);
+  row_put_numbers(row, table_column(t, "v"), o->v);
+  row_put_numbers(row, table_column(t, "impulse"), o->impulse);
+  row_put_number(row, table_column(t, "energy"), o->energy);
+  row_put_number(row, table_column(t, "residual"), o->residual);
+  row_put_number(row, table_column(t, "clearance"), o->clearance);
+  row_put_number(row, table_column(t, "clearance_time"), o->clearance_time);
+  row_put_integer(row, table_column(t, "clearance_particle"), (long)o->clearance_particle);
+  row_put_number(row, table_column(t, "condition"), o->condition);
+  row_put_integer(row, table_column(t, "mode"), (long)o->mode);
+  row_put_integer(row, table_column(t, "harmonic"), (long)o->harmonic);
+}
+
+static int orbits_evaluate(worker *w, const table *layout, uint64_t task, unsigned char *row) {
+  ric_error error = {0};
+  study_values_at(w->values, task);
+  chain_model_read(&w->model, w->values);
+  ric_status status = solve(w, &error);
+  if (status == RIC_ESTOPPED)
+    return -1;
+  if (status != RIC_OK)
+    ric_orbit_fail(&w->orbit, error.message);
+  fill_row(&w->orbit, layout, row);
+  return 0;
+}
+
+const kind kind_orbits = {.name = "orbits",
+                          .plan = orbits_plan,
+                          .open = orbits_open,
+                          .evaluate = orbits_evaluate,
+                          .close = orbits_close,
+                          .extra = orbits_special};

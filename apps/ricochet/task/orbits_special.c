@@ -1,0 +1,174 @@
+#include "orbits_special.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "chain_model.h"
+
+enum { MOST_POINTS = 100000 };
+
+static const char *const special_names[] = {"resonance", "singular"};
+
+typedef struct special {
+  int kind; /* index of special_names */
+  double parameter;
+  long mode, harmonic;
+} special;
+
+/* The range of the one sweep, and along what it goes. */
+typedef struct range {
+  ric_along along;
+  double low, high, period;
+} range;
+
+static range range_of(const study *s, const study_values *v) {
+  const study_sweep *sweep = study_sweep_at(s, 0);
+  range r = {.along = sweep->key == KEY_MODEL_GAMMA ? RIC_ALONG_GAMMA : RIC_ALONG_PERIOD,
+             .low = sweep->values[0],
+             .high = sweep->values[0],
+             .period = value_number(v, KEY_ORBIT_PERIOD, 0)};
+  for (size_t i = 1; i < sweep->points; i++) {
+    r.low = sweep->values[i] < r.low ? sweep->values[i] : r.low;
+    r.high = sweep->values[i] > r.high ? sweep->values[i] : r.high;
+  }
+  return r;
+}
+
+static int count_resonances(const chain_model *m, const range *r, size_t *count) {
+  return ric_chain_resonances(&m->chain, r->along, r->period, r->low, r->high, NULL, 0, count, NULL) == RIC_OK;
+}
+
+int orbits_special_plan(const study *s, const study_values *v, message *why) {
+  chain_model model = {0};
+  size_t count = 0;
+  char place[256];
+  if (!value_flag(v, KEY_ORBIT_SPECIAL_POINTS) || chain_model_init(&model, v) != 0)
+    return 0;
+  range r = range_of(s, v);
+  int listed = count_resonances(&model, &r, &count);
+  chain_model_clear(&model);
+  if (listed && count <= MOST_POINTS)
+    return 0;
+  study_place(s, KEY_ORBIT_SPECIAL_POINTS, place, sizeof place);
+  return refuse(why, EXIT_USAGE, "%s: %zu resonances in the range of the sweep, expected at most %d", place, count,
+                MOST_POINTS);
+}
+
+static int by_parameter(const void *a, const void *b) {
+  const special *x = a, *y = b;
+  if (x->parameter != y->parameter)
+    return x->parameter < y->parameter ? -1 : 1;
+  if (x->kind != y->kind)
+    return x->kind - y->kind;
+  return x->mode < y->mode ? -1 : x->mode > y->mode;
+}
+
+/* Both lists merged into [count]; NULL on failure. */
+static special *list_points(const chain_model *m, const ric_pattern *pattern, ric_orbit_solver *solver, const range *r,
+                            size_t *count, ric_error *error) {
+  size_t poles = 0, zeros = 0;
+  ric_resonance *resonances = NULL;
+  double *singular = NULL;
+  special *list = NULL;
+  if (!count_resonances(m, r, &poles) || ric_orbit_singular_points(solver, &m->chain, pattern, r->along, r->period,
+                                                                   r->low, r->high, NULL, 0, &zeros, error) != RIC_OK)
+    return NULL;
+  resonances = calloc(poles + 1, sizeof *resonances);
+  singular = calloc(zeros + 1, sizeof *singular);
+  if (resonances && singular && (list = calloc(poles + zeros + 1, sizeof *list))) {
+    ric_chain_resonances(&m->chain, r->along, r->period, r->low, r->high, resonances, poles, &poles, error);
+    ric_orbit_singular_points(solver, &m->chain, pattern, r->along, r->period, r->low, r->high, singular, zeros, &zeros,
+                              error);
+    for (size_t i = 0; i < poles; i++)
+      list[i] = (special){.parameter = resonances[i].parameter,
+                          .mode = (long)resonances[i].mode,
+                          .harmonic = (long)resonances[i].harmonic};
+    for (size_t i = 0; i < zeros; i++)
+      list[poles + i] = (special){.kind = 1, .parameter = singular[i], .mode = -1};
+    *count = poles + zeros;
+    qsort(list, *count, sizeof *list, by_parameter);
+  }
+  free(resonances);
+  free(singular);
+  return list;
+}
+
+static void lay_out(table *t) {
+  const column columns[] = {
+      {.name = "kind",
+       .type = COLUMN_ENUM,
+       .extent = 1,
+       .names = special_names,
+       .name_count = 2,
+       .units = "1",
+       .long_name = "resonance of a mode, or zero of the contact determinant",
+       .source = "[JAP] (11)-(12)"},
+      {.name = "parameter",
+       .type = COLUMN_F64,
+       .extent = 1,
+       .units = "1",
+       .long_name = "value of the swept parameter",
+       .source = "[JAP] (11)-(12)"},
+      {.name = "mode",
+       .type = COLUMN_I64,
+       .extent = 1,
+       .units = "1",
+       .long_name = "resonant mode, else -1",
+       .source = "[JAP] (12)"},
+      {.name = "harmonic",
+       .type = COLUMN_I64,
+       .extent = 1,
+       .units = "1",
+       .long_name = "oscillations of the mode per period, else 0",
+       .source = "[JAP] (12)"},
+  };
+  *t = (table){.group = "special", .row_axis = "special_point"};
+  for (size_t i = 0; i < sizeof columns / sizeof *columns; i++)
+    t->columns[t->column_count++] = columns[i];
+  table_lay_out(t);
+}
+
+static int fill(extra_rows *extra, const special *list, size_t count) {
+  const table *t = &extra->layout;
+  extra->rows = calloc(count + 1, t->row_bytes);
+  if (!extra->rows)
+    return -1;
+  extra->count = count;
+  for (size_t i = 0; i < count; i++) {
+    unsigned char *row = extra->rows + i * t->row_bytes;
+    row_put_word(row, table_column(t, "kind"), list[i].kind);
+    row_put_number(row, table_column(t, "parameter"), list[i].parameter);
+    row_put_integer(row, table_column(t, "mode"), list[i].mode);
+    row_put_integer(row, table_column(t, "harmonic"), list[i].harmonic);
+  }
+  return 0;
+}
+
+int orbits_special(const study *s, extra_rows *extra, message *why) {
+  *extra = (extra_rows){0};
+  ric_error error = {.message = "out of memory"};
+  chain_model model = {0};
+  ric_pattern *pattern = NULL;
+  ric_orbit_solver *solver = NULL;
+  special *list = NULL;
+  size_t count = 0;
+  int done = 0;
+  study_values *v = study_values_create(s);
+  if (v && !value_flag(v, KEY_ORBIT_SPECIAL_POINTS)) {
+    study_values_destroy(&v);
+    return 0;
+  }
+  if (v && chain_model_init(&model, v) == 0 && chain_model_pattern(v, &pattern, &error) == RIC_OK &&
+      ric_orbit_solver_create(NULL, &solver, &error) == RIC_OK) {
+    range r = range_of(s, v);
+    lay_out(&extra->layout);
+    list = list_points(&model, pattern, solver, &r, &count, &error);
+    done = list && fill(extra, list, count) == 0;
+  }
+  free(list);
+  ric_orbit_solver_destroy(&solver);
+  ric_pattern_destroy(&pattern);
+  chain_model_clear(&model);
+  study_values_destroy(&v);
+  return done ? 0 : refuse(why, EXIT_RUN, "%s: special points: %s", study_name(s), error.message);
+}

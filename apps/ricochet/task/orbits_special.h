@@ -1,0 +1,13 @@
+/* Resonances and singular points along the swept parameter of an `orbits` study: the table `special`. */
+#ifndef RICOCHET_APP_ORBITS_SPECIAL_H
+#define RICOCHET_APP_ORBITS_SPECIAL_H
+
+#include "kind.h"
+
+/** Refuses `special_points: true` where the list would be too long. */
+int orbits_special_plan(const study *s, const study_values *v, message *why);
+
+/** The list, ordered by parameter; empty unless the study asks for it. */
+int orbits_special(const study *s, extra_rows *extra, message *why);
+
+#endif

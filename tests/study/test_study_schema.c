@@ -1,0 +1,155 @@
+#include "support.h"
+
+#include "study/schema.h"
+
+static void every_row_is_complete(void **state) {
+  (void)state;
+  for (int key = 0; key < KEY_COUNT; key++) {
+    const schema_entry *row = schema_row((study_key)key);
+    assert_non_null(row->path);
+    assert_non_null(row->doc);
+    assert_int_equal(schema_find(row->path), key);
+    assert_true(row->scalar || row->list);
+    assert_true(row->required == (row->fallback == NULL));
+    assert_true(row->sweep == (row->no_sweep == NULL));
+    assert_true((row->type == VALUE_WORD) == (row->words != NULL));
+  }
+  assert_int_equal(schema_find("model.gama"), KEY_COUNT);
+  assert_int_equal(schema_find("model"), KEY_COUNT);
+  assert_int_equal(schema_find(""), KEY_COUNT);
+}
+
+static void mistyped_names_find_the_nearest_key(void **state) {
+  (void)state;
+  static const char *const cases[][2] = {{"model.gama", "model.gamma"},
+                                         {"model.gmama", "model.gamma"},
+                                         {"model.Gamma", "model.gamma"},
+                                         {"orbit.periode", "orbit.period"},
+                                         {"orbit.at_strat", "orbit.at_start"},
+                                         {"model.partciles", "model.particles"},
+                                         {"gamma", "model.gamma"},
+                                         {"orbit.gamma", "model.gamma"},
+                                         {"period", "orbit.period"},
+                                         {"knd", "kind"},
+                                         {"modle", "model"},
+                                         {"sweeps", "sweep"},
+                                         {"sweep.form", "sweep.from"},
+                                         {"sweep.point", "sweep.points"},
+                                         {"orbit.special_point", "orbit.special_points"},
+                                         {"model.zzz", ""},
+                                         {"", ""},
+                                         {"colour", ""}};
+  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    char near[64];
+    schema_nearest(cases[i][0], near, sizeof near);
+    assert_string_equal(near, cases[i][1]);
+  }
+}
+
+static void parameters_are_looked_for_among_the_sweepable(void **state) {
+  (void)state;
+  char near[64];
+  schema_nearest_parameter("model.gama", near, sizeof near);
+  assert_string_equal(near, "model.gamma");
+  schema_nearest_parameter("period", near, sizeof near);
+  assert_string_equal(near, "orbit.period");
+  schema_nearest_parameter("model.endz", near, sizeof near);
+  assert_string_equal(near, "");
+}
+
+static void very_long_names_are_near_to_nothing(void **state) {
+  (void)state;
+  char name[5000], near[64];
+  memset(name, 'a', sizeof name);
+  name[sizeof name - 1] = 0;
+  schema_nearest(name, near, sizeof near);
+  assert_string_equal(near, "");
+  schema_nearest_parameter(name, near, sizeof near);
+  assert_string_equal(near, "");
+}
+
+static void assert_allowed(study_key key, const char *expected) {
+  char text[256];
+  schema_allowed(schema_row(key), text, sizeof text);
+  assert_string_equal(text, expected);
+}
+
+static void allowed_values_are_said_in_words(void **state) {
+  (void)state;
+  assert_allowed(KEY_KIND, "orbits");
+  assert_allowed(KEY_TITLE, "text");
+  assert_allowed(KEY_MODEL_PARTICLES, "an integer from 1 to 1000000000");
+  assert_allowed(KEY_MODEL_ENDS, "one of periodic, fixed, free");
+  assert_allowed(KEY_MODEL_GAMMA, "a number >= 0");
+  assert_allowed(KEY_MODEL_FLOOR, "a number or null, or a list of them");
+  assert_allowed(KEY_MODEL_RESTITUTION, "a number from 0 to 1");
+  assert_allowed(KEY_ORBIT_PERIOD, "a number > 0");
+  assert_allowed(KEY_ORBIT_AT_START, "a list of integers >= 0");
+  assert_allowed(KEY_ORBIT_STATES, "true or false");
+  assert_allowed(KEY_ORBIT_VERIFY, "false");
+}
+
+static void open_ranges_are_said_and_checked(void **state) {
+  (void)state;
+  const schema_entry row = {.type = VALUE_NUMBER, .low = 0, .high = 1, .low_open = true, .high_open = true};
+  char text[64];
+  schema_allowed_item(&row, text, sizeof text);
+  assert_string_equal(text, "a number > 0 and < 1");
+  assert_int_equal(schema_check(&row, 0), FIT_OUT_OF_RANGE);
+  assert_int_equal(schema_check(&row, 0.5), FIT_OK);
+  assert_int_equal(schema_check(&row, 1), FIT_OUT_OF_RANGE);
+}
+
+static void numbers_outside_a_row_do_not_fit(void **state) {
+  (void)state;
+  const schema_entry *gamma = schema_row(KEY_MODEL_GAMMA), *particles = schema_row(KEY_MODEL_PARTICLES);
+  assert_int_equal(schema_check(gamma, 0), FIT_OK);
+  assert_int_equal(schema_check(gamma, -1e-300), FIT_OUT_OF_RANGE);
+  assert_int_equal(schema_check(gamma, NAN), FIT_OUT_OF_RANGE);
+  assert_int_equal(schema_check(gamma, INFINITY), FIT_OUT_OF_RANGE);
+  assert_int_equal(schema_check(particles, NAN), FIT_OUT_OF_RANGE);
+  assert_int_equal(schema_check(particles, 2.5), FIT_NOT_INTEGER);
+  assert_int_equal(schema_check(particles, 0), FIT_OUT_OF_RANGE);
+  assert_int_equal(schema_check(schema_row(KEY_ORBIT_AT_START), 0x1p53), FIT_OUT_OF_RANGE);
+  assert_int_equal(schema_check(schema_row(KEY_ORBIT_PERIOD), 0), FIT_OUT_OF_RANGE);
+}
+
+static void reference_lists_every_key(void **state) {
+  (void)state;
+  char *text = NULL;
+  FILE *file = tmpfile();
+  assert_non_null(file);
+  schema_reference(file);
+  const long length = ftell(file);
+  assert_true(length > 0);
+  text = calloc((size_t)length + 1, 1);
+  assert_non_null(text);
+  rewind(file);
+  assert_int_equal(fread(text, 1, (size_t)length, file), length);
+  fclose(file);
+  for (int key = 0; key < KEY_COUNT; key++) {
+    char cell[128];
+    snprintf(cell, sizeof cell, "| `%s` |", schema_row((study_key)key)->path);
+    assert_non_null(strstr(text, cell));
+    assert_non_null(strstr(text, schema_row((study_key)key)->doc));
+  }
+  for (int key = 0; key < SWEEP_KEY_COUNT; key++)
+    assert_non_null(strstr(text, schema_sweep_row((sweep_key)key)->doc));
+  assert_non_null(strstr(text, "1.5 pi"));
+  assert_non_null(strstr(text, "shooting, ritz"));
+  free(text);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(every_row_is_complete),
+      cmocka_unit_test(mistyped_names_find_the_nearest_key),
+      cmocka_unit_test(parameters_are_looked_for_among_the_sweepable),
+      cmocka_unit_test(very_long_names_are_near_to_nothing),
+      cmocka_unit_test(allowed_values_are_said_in_words),
+      cmocka_unit_test(open_ranges_are_said_and_checked),
+      cmocka_unit_test(numbers_outside_a_row_do_not_fit),
+      cmocka_unit_test(reference_lists_every_key),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
