@@ -158,9 +158,11 @@ int ric_poly_first_root(const double *c, int degree, double *at) {
   while (depth > 0) {
     piece *p = &stack[--depth];
     int first, changes = sign_changes(p->b, degree, 0, &first);
-    if (p->b[0] > 0 && changes == 0)
+    if (p->b[0] > 0 && changes == 0 && p->b[degree] > 0)
       continue;
-    if (p->b[0] > 0 && changes == 1)
+    if (p->b[0] > 0 && changes == 0) /* positive up to its end, where it is zero */
+      *at = p->start + p->width;
+    else if (p->b[0] > 0 && changes == 1)
       *at = bracketed_root(c, degree, 0, p->start, p->start + p->width);
     else if (p->b[0] > 0 && depth < DEPTH) {
       halve(p, p + 1, degree); /* the first half lands on top and is looked at first */

@@ -45,45 +45,64 @@ static double at_contact(const unit_cell *cell, const border_mode *b, const cont
   return k->role == RIC_ROLE_HALF && b->harmonic % 2 == 1 ? -shape : shape;
 }
 
+/* The near waves as modes: group 0 holds those at resonance, every other wave is a group of its own. */
 static void list_border(contact_system *c, const unit_cell *cell, const response *r, double resonance_tol) {
-  c->border_count = c->exact = 0;
-  for (int exact = 1; exact >= 0; exact--) /* exact ones first */
+  size_t group = 0;
+  c->border_count = 0;
+  for (int exact = 1; exact >= 0; exact--)
     for (size_t i = 0; i < r->near_count; i++) {
       const near_wave *w = &r->near[i];
       if ((fabs(w->distance) <= pi * resonance_tol) != exact)
         continue;
       size_t modes[2], count = response_modes(&cell->chain, w->wave, modes);
+      group += !exact;
       for (size_t k = 0; k < count; k++)
         c->border[c->border_count++] = (border_mode){.mode = modes[k],
                                                      .harmonic = w->harmonic,
                                                      .stiffness = exact ? 0 : 2 * w->omega * sin(w->distance),
-                                                     .exact = exact};
+                                                     .group = group};
     }
-  while (c->exact < c->border_count && c->border[c->exact].exact)
-    c->exact++;
+}
+
+/* Eigenvalues, largest first, and eigenvectors of a symmetric matrix. One and two modes, the usual case, are a rotation
+ * by hand because the library's workspace would be allocated in a hot loop. */
+static int diagonalise(double *gram, size_t count, double *values, double *vectors) {
+  if (count <= 2) {
+    double angle = count == 2 ? atan2(2 * gram[1], gram[0] - gram[3]) / 2 : 0, c = cos(angle), s = sin(angle);
+    double turn[4] = {c, -s, s, c};
+    for (size_t i = 0; i < count * count; i++)
+      vectors[i] = turn[i];
+    values[0] = count == 2 ? c * c * gram[0] + 2 * c * s * gram[1] + s * s * gram[3] : gram[0];
+    if (count == 2)
+      values[1] = s * s * gram[0] - 2 * c * s * gram[1] + c * c * gram[3];
+    return 0;
+  }
+  gsl_eigen_symmv_workspace *w = gsl_eigen_symmv_alloc(count);
+  if (!w)
+    return GSL_ENOMEM;
+  gsl_matrix_view g = gsl_matrix_view_array(gram, count, count), v = gsl_matrix_view_array(vectors, count, count);
+  gsl_vector_view e = gsl_vector_view_array(values, count);
+  int code = gsl_eigen_symmv(&g.matrix, &e.vector, &v.matrix, w);
+  gsl_eigen_symmv_free(w);
+  return code ? code : gsl_eigen_symmv_sort(&e.vector, &v.matrix, GSL_EIGEN_SORT_VAL_DESC);
 }
 
 ric_status contact_visible(const unit_cell *cell, const border_mode *modes, size_t count, double *rotation,
                            size_t *visible, ric_error *error) {
   double gram[BORDER_MODES * BORDER_MODES], vectors[BORDER_MODES * BORDER_MODES], values[BORDER_MODES];
-  for (size_t a = 0; a < count; a++)
-    for (size_t b = 0; b < count; b++) {
-      gram[a * count + b] = 0;
-      for (size_t k = 0; k < cell->impacts; k++)
-        gram[a * count + b] +=
-            at_contact(cell, &modes[a], &cell->contacts[k]) * at_contact(cell, &modes[b], &cell->contacts[k]);
-    }
   *visible = 0;
   if (count == 0)
     return RIC_OK;
-  gsl_eigen_symmv_workspace *w = gsl_eigen_symmv_alloc(count);
-  if (!w)
-    return ric_fail(error, RIC_ENOMEM, "no memory for the Gram matrix of %zu resonant modes", count);
-  gsl_matrix_view g = gsl_matrix_view_array(gram, count, count), v = gsl_matrix_view_array(vectors, count, count);
-  gsl_vector_view e = gsl_vector_view_array(values, count);
-  int code = gsl_eigen_symmv(&g.matrix, &e.vector, &v.matrix, w);
-  code = code ? code : gsl_eigen_symmv_sort(&e.vector, &v.matrix, GSL_EIGEN_SORT_VAL_DESC);
-  gsl_eigen_symmv_free(w);
+  for (size_t i = 0; i < count * count; i++)
+    gram[i] = 0;
+  for (size_t k = 0; k < cell->impacts; k++) {
+    double u[BORDER_MODES];
+    for (size_t a = 0; a < count; a++)
+      u[a] = at_contact(cell, &modes[a], &cell->contacts[k]);
+    for (size_t i = 0; i < count * count; i++)
+      gram[i] += u[i / count] * u[i % count];
+  }
+  int code = diagonalise(gram, count, values, vectors);
   if (code)
     return ric_fail(error, RIC_ENUMERIC, "eigenvalues of a %zu x %zu Gram matrix: %s", count, count,
                     gsl_strerror(code));
@@ -96,42 +115,63 @@ ric_status contact_visible(const unit_cell *cell, const border_mode *modes, size
   return RIC_OK;
 }
 
+/* Columns of the combinations that the contacts see, group by group. */
+static ric_status combine(contact_system *c, const unit_cell *cell, ric_error *error) {
+  double rotation[BORDER_MODES * BORDER_MODES];
+  c->column_count = 0;
+  for (size_t first = 0, count; first < c->border_count; first += count) {
+    size_t visible;
+    for (count = 1; first + count < c->border_count && c->border[first + count].group == c->border[first].group;)
+      count++;
+    RIC_TRY(contact_visible(cell, &c->border[first], count, rotation, &visible, error));
+    for (size_t v = 0; v < visible; v++, c->column_count++)
+      for (size_t a = 0; a < c->border_count; a++)
+        c->weights[a][c->column_count] = a >= first && a < first + count ? rotation[(a - first) * count + v] : 0;
+  }
+  return RIC_OK;
+}
+
 static double entry(const unit_cell *cell, const response *r, const contact *k, const contact *l) {
   return image_ring_entry(&cell->chain, k->role == l->role ? r->start_kernel : r->half_kernel, k->site, l->site);
 }
 
-/* Columns and rows of the border modes; exact ones through the rotation that keeps their visible combinations. */
-static void border(const contact_system *c, const unit_cell *cell, const double *rotation, size_t size) {
-  size_t m = cell->impacts, hidden = c->exact - c->seen;
-  for (size_t s = 0; s < c->border_count; s++) {
-    if (s >= c->seen && s < c->exact)
-      continue;
-    size_t column = m + (s < c->exact ? s : s - hidden);
-    for (size_t k = 0; k < m; k++) {
-      double u = 0;
-      if (s < c->exact)
-        for (size_t a = 0; a < c->exact; a++)
-          u += rotation[a * c->exact + s] * at_contact(cell, &c->border[a], &cell->contacts[k]);
-      else
-        u = at_contact(cell, &c->border[s], &cell->contacts[k]);
-      c->matrix[k * size + column] = c->matrix[column * size + k] = u;
-    }
-    c->matrix[column * size + column] = -c->border[s].stiffness;
+/* One border column and row: a combination at the contacts, scaled to the size of the responses. Its weights are scaled
+ * along, so that the solution is in units of the modes. */
+static void border(contact_system *c, const unit_cell *cell, size_t column, size_t size, double scale) {
+  size_t m = cell->impacts, at = m + column;
+  double largest = 0, stiffness = 0;
+  for (size_t k = 0; k < m; k++) {
+    double u = 0;
+    for (size_t a = 0; a < c->border_count; a++)
+      if (c->weights[a][column] != 0) {
+        u += c->weights[a][column] * at_contact(cell, &c->border[a], &cell->contacts[k]);
+        stiffness = c->border[a].stiffness;
+      }
+    c->matrix[k * size + at] = u;
+    largest = fmax(largest, fabs(u));
   }
+  double unit = scale / largest;
+  for (size_t k = 0; k < m; k++)
+    c->matrix[at * size + k] = c->matrix[k * size + at] *= unit;
+  c->matrix[at * size + at] = -stiffness * unit * unit;
+  for (size_t a = 0; a < c->border_count; a++)
+    c->weights[a][column] *= unit;
 }
 
 /* The symmetric matrix [size][size] and the right-hand side. */
-static void assemble(contact_system *c, const unit_cell *cell, const response *r, const double *rotation, size_t size) {
+static void assemble(contact_system *c, const unit_cell *cell, const response *r) {
+  size_t m = cell->impacts, size = m + c->column_count;
   for (size_t i = 0; i < size * size; i++)
     c->matrix[i] = 0;
   for (size_t i = 0; i < size; i++)
-    c->rhs[i] = i < cell->impacts ? ric_chain_floor(&cell->chain, cell->contacts[i].site) : 0;
-  for (size_t k = 0; k < cell->impacts; k++)
+    c->rhs[i] = i < m ? ric_chain_floor(&cell->chain, cell->contacts[i].site) : 0;
+  for (size_t k = 0; k < m; k++)
     for (size_t l = 0; l <= k; l++) {
       double g = entry(cell, r, &cell->contacts[k], &cell->contacts[l]);
       c->matrix[k * size + l] = c->matrix[l * size + k] = g;
     }
-  border(c, cell, rotation, size);
+  for (size_t column = 0; column < c->column_count; column++)
+    border(c, cell, column, size, r->scale);
 }
 
 /* QR with column pivoting, which also estimates the inverse's norm: condition = scale of the free responses times it.
@@ -160,28 +200,19 @@ static ric_status factor_and_solve(contact_system *c, size_t size, double scale,
   return code ? ric_fail(error, RIC_ENUMERIC, "contact matrix of size %zu: %s", size, gsl_strerror(code)) : RIC_OK;
 }
 
-/* Amplitudes of the border modes from the tail of the solution. */
-static void unpack_amplitudes(contact_system *c, const double *rotation, size_t m) {
-  for (size_t s = 0; s < c->border_count; s++) {
-    c->amplitude[s] = 0;
-    if (s >= c->exact)
-      c->amplitude[s] = c->solution[m + s - (c->exact - c->seen)];
-    for (size_t a = 0; s < c->exact && a < c->seen; a++)
-      c->amplitude[s] += rotation[s * c->exact + a] * c->solution[m + a];
-  }
-}
-
 ric_status contact_solve(contact_system *c, const unit_cell *cell, const response *r, double resonance_tol, double *p,
                          ric_error *error) {
-  double rotation[BORDER_MODES * BORDER_MODES];
   size_t m = cell->impacts;
   RIC_TRY(reserve(c, m, error));
   list_border(c, cell, r, resonance_tol);
-  RIC_TRY(contact_visible(cell, c->border, c->exact, rotation, &c->seen, error));
-  size_t size = m + c->border_count - (c->exact - c->seen);
-  assemble(c, cell, r, rotation, size);
-  RIC_TRY(factor_and_solve(c, size, r->scale, error));
-  unpack_amplitudes(c, rotation, m);
+  RIC_TRY(combine(c, cell, error));
+  assemble(c, cell, r);
+  RIC_TRY(factor_and_solve(c, m + c->column_count, r->scale, error));
+  for (size_t a = 0; a < c->border_count; a++) {
+    c->amplitude[a] = 0;
+    for (size_t column = 0; column < c->column_count; column++)
+      c->amplitude[a] += c->weights[a][column] * c->solution[m + column];
+  }
   for (size_t k = 0; k < m; k++)
     p[k] = c->solution[k];
   return RIC_OK;
@@ -191,8 +222,8 @@ ric_status contact_eigenvalues(contact_system *c, const unit_cell *cell, const r
                                ric_error *error) {
   size_t m = cell->impacts;
   RIC_TRY(reserve(c, m, error));
-  c->border_count = c->exact = c->seen = 0;
-  assemble(c, cell, r, NULL, m);
+  c->border_count = c->column_count = 0;
+  assemble(c, cell, r);
   gsl_eigen_symm_workspace *w = gsl_eigen_symm_alloc(m);
   if (!w)
     return ric_fail(error, RIC_ENOMEM, "no memory for the eigenvalues of %zu impacts", m);

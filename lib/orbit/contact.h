@@ -5,8 +5,9 @@
  *   sum_l G_kl(t_k - t_l) p_l + sum_s u_ks a_s = b_k,     sum_k u_ks p_k - d_s a_s = 0,
  *
  * with u_ks = phi_s(k), times (-1)^l for impacts at T/2, and d_s = 2 omega sin(distance), which is 0 at resonance. The
- * matrix is symmetric. A combination of exactly resonant modes that vanishes at every contact has no equation: its
- * amplitude is free, and is left out (0). */
+ * matrix is symmetric. A combination of modes of equal d that vanishes at every contact is not excited, and at
+ * resonance its amplitude is free: it is left out (0). So the unknowns are the combinations that the contacts see,
+ * scaled to the size of the other entries. */
 #ifndef RICOCHET_CONTACT_H
 #define RICOCHET_CONTACT_H
 
@@ -20,7 +21,7 @@ typedef struct border_mode {
   size_t mode;
   unsigned harmonic;
   double stiffness; /* d_s; exactly 0 at resonance */
-  int exact;        /* within resonance_tol */
+  size_t group; /* modes of equal stiffness, numbered from 0: all that are at resonance, or a wave number of its own */
 } border_mode;
 
 enum { BORDER_MODES = 2 * RESPONSE_NEAR };
@@ -33,16 +34,16 @@ typedef struct contact_system {
   size_t *permutation;
   border_mode border[BORDER_MODES];
   size_t border_count;
-  double amplitude[BORDER_MODES]; /* a_s of the solution */
-  size_t exact;                   /* border modes at resonance */
-  size_t seen;                    /* dimension of their span at the contacts; below `exact` some amplitude is free */
+  size_t column_count;                        /* combinations of border modes that the contacts see */
+  double weights[BORDER_MODES][BORDER_MODES]; /* [mode][column] */
+  double amplitude[BORDER_MODES];             /* a_s of the solution */
   double condition;
 } contact_system;
 
 void contact_system_clear(contact_system *c);
 
-/** Modes among the first `count` resonant ones whose combinations the contacts see: the rank of [contacts][modes], from
- *  its Gram matrix. @param rotation  [count][count], columns are orthonormal combinations, seen ones first; may be NULL
+/** Combinations of modes that the contacts see: the rank of [contacts][modes], from its Gram matrix.
+ *  @param rotation  [count][count], columns are orthonormal combinations, seen ones first; may be NULL
  *  @param visible  set to the rank */
 ric_status contact_visible(const unit_cell *cell, const border_mode *modes, size_t count, double *rotation,
                            size_t *visible, ric_error *error);

@@ -1,6 +1,7 @@
 #include "ricochet/orbit.h"
 
 #include <math.h>
+#include <stdint.h>
 #include <stdlib.h>
 
 const char *ric_outcome_name(ric_outcome outcome) {
@@ -30,7 +31,7 @@ ric_status ric_orbit_init(ric_orbit *orbit, size_t particles, size_t impacts, ri
   if (particles < 1 || impacts < 1 || impacts > particles)
     return ric_fail(error, RIC_EINVAL, "orbit of %zu particles and %zu impacts, expected 1 <= impacts <= particles",
                     particles, impacts);
-  double *store = calloc(4 * particles + impacts, sizeof *store);
+  double *store = particles < SIZE_MAX / 64 ? calloc(4 * particles + impacts, sizeof *store) : NULL;
   if (!store)
     return ric_fail(error, RIC_ENOMEM, "no memory for an orbit of %zu particles", particles);
   orbit->q = store;

@@ -84,16 +84,16 @@ bool ric_pattern_equal(const ric_pattern *a, const ric_pattern *b) {
   return a->particles == b->particles && memcmp(a->role, b->role, a->particles) == 0;
 }
 
-/* Appends " name i j k ... (count)", a few particles of each. */
+/* Appends "name i j k ... l (count) ", the first few particles and the last. */
 static size_t append_list(char *text, size_t size, size_t used, const char *name, const size_t *list, size_t count) {
-  enum { SHOWN = 6 };
+  enum { ALL = 6, FIRST = 3 };
   if (count == 0 || used >= size)
     return used;
   used += (size_t)snprintf(text + used, size - used, "%s ", name);
-  for (size_t i = 0; i < count && i < SHOWN && used < size; i++)
+  for (size_t i = 0; i < (count > ALL ? FIRST : count) && used < size; i++)
     used += (size_t)snprintf(text + used, size - used, "%zu ", list[i]);
-  if (count > SHOWN && used < size)
-    used += (size_t)snprintf(text + used, size - used, "... (%zu) ", count);
+  if (count > ALL && used < size)
+    used += (size_t)snprintf(text + used, size - used, "... %zu (%zu) ", list[count - 1], count);
   return used;
 }
 

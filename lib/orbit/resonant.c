@@ -15,7 +15,7 @@ static double wave_index(const ric_chain *chain, double frequency) {
 static size_t add_wave(const ric_chain *chain, size_t wave, unsigned harmonic, border_mode *modes, size_t count) {
   size_t pair[2], members = response_modes(chain, wave, pair);
   for (size_t i = 0; i < members && count < BORDER_MODES; i++)
-    modes[count++] = (border_mode){.mode = pair[i], .harmonic = harmonic, .exact = 1};
+    modes[count++] = (border_mode){.mode = pair[i], .harmonic = harmonic};
   return count;
 }
 

@@ -7,6 +7,10 @@
 
 static const double pi = 3.14159265358979323846;
 
+/* Waves with n |sin d| below it are set apart. What they leave in the contact matrix, 2 / n times 1 / (2 omega |sin
+ * d|), is then of order one, so that no digits cancel there unless the matrix is singular. */
+static const double closeness = 0.5;
+
 /* Wave numbers [first, last] that belong to modes: the odd part of the image ring has no constant and no alternating
  * mode, the even part no alternating one. */
 static size_t first_wave(const ric_chain *chain) {
@@ -86,7 +90,7 @@ static void set_apart(response *r) {
 }
 
 void response_compute(response *r, const ric_chain *chain, double period, int apart) {
-  double gamma = image_ring_gamma(chain), n = (double)chain->particles, near = apart ? 0.05 / n : 0;
+  double gamma = image_ring_gamma(chain), n = (double)chain->particles, near = apart ? closeness / n : 0;
   size_t pair[2];
   r->near_count = 0;
   r->scale = 0;
@@ -98,10 +102,11 @@ void response_compute(response *r, const ric_chain *chain, double period, int ap
     double s = sin(d), sign = fmod(l, 2) == 0 ? 1 : -1;
     r->half[j] = sign / (2 * omega * s);
     r->start[j] = cos(d) / (2 * omega * s);
-    if (l >= 1 && fabs(s) < near)
+    int close = l >= 1 && fabs(s) < near;
+    if (close)
       remember(r, (near_wave){.wave = j, .harmonic = (unsigned)l, .omega = omega, .distance = d});
-    else
-      r->scale += fabs(r->half[j]) * (double)response_modes(chain, j, pair) / n;
+    double largest = close ? 1 / (2 * omega) : fabs(r->half[j]);
+    r->scale += largest * (double)response_modes(chain, j, pair) / n;
   }
   set_apart(r);
 }

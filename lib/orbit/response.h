@@ -33,7 +33,7 @@ typedef struct response {
   double *modal_start, *modal_half;   /* work arrays for modal coefficients */
   near_wave near[RESPONSE_NEAR];
   size_t near_count;
-  double scale; /* mean over the modes of the largest response 1 / (2 omega |sin x|), without the near ones */
+  double scale; /* mean over the modes of the largest response 1 / (2 omega |sin x|); 1 / (2 omega) for the near ones */
 } response;
 
 /** Plans and tables for chains with these particles and ends; does nothing when they are there already. */

@@ -91,7 +91,7 @@ static ric_status search(family *f, const ric_resonance *poles, size_t pole_coun
   gsl_root_fsolver *brent = gsl_root_fsolver_alloc(gsl_root_fsolver_brent);
   if (!brent)
     return ric_fail(f->error, RIC_ENOMEM, "no memory for a root finder");
-  double margin = 1e-12 * (high - low), left = low;
+  double margin = 1e-12 * (high - low), left = low > 0 || f->along == RIC_ALONG_GAMMA ? low : margin;
   ric_status status = RIC_OK;
   for (size_t i = 0; i <= pole_count && status == RIC_OK; i++) {
     double right = i < pole_count ? poles[i].parameter - margin : high;

@@ -136,7 +136,7 @@ static ric_status solve(ric_orbit_solver *s, const ric_chain *chain, const ric_p
                 : impulse_solve(&s->impulse, &s->cell, period, o->resonance_tol, o->singular_condition, &state,
                                 &orbit->condition, error));
   if (is_singular(s, chain, period, orbit->condition)) {
-    verdict_no_orbit(orbit, RIC_SINGULAR);
+    verdict_without_state(orbit, RIC_SINGULAR);
     snprintf(orbit->reason, sizeof orbit->reason, "contact matrix is singular: condition %.3g, limit %.3g",
              orbit->condition, o->singular_condition);
     return RIC_OK;
@@ -148,16 +148,18 @@ static ric_status solve(ric_orbit_solver *s, const ric_chain *chain, const ric_p
 
 ric_status ric_orbit_solve(ric_orbit_solver *solver, const ric_chain *chain, const ric_pattern *pattern, double period,
                            ric_orbit *orbit, ric_error *error) {
-  RIC_TRY(check_problem(solver, chain, pattern, period, orbit, error));
+  ric_error own, *e = error ? error : &own;
   orbit->period = period;
   orbit->mode = -1;
   orbit->harmonic = 0;
   orbit->reason[0] = '\0';
   orbit->condition = NAN;
   gsl_error_handler_t *handler = gsl_set_error_handler_off();
-  ric_status status = solve(solver, chain, pattern, period, orbit, error);
+  ric_status status = check_problem(solver, chain, pattern, period, orbit, e);
+  if (status == RIC_OK)
+    status = solve(solver, chain, pattern, period, orbit, e);
   gsl_set_error_handler(handler);
   if (status != RIC_OK)
-    verdict_no_orbit(orbit, RIC_FAILED);
+    ric_orbit_fail(orbit, e->message);
   return status;
 }

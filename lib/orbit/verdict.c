@@ -106,8 +106,8 @@ static ric_status explain_violation(motion *m, const facts *f, const boundary_st
     return RIC_OK;
   }
   const located *deepest = unit_cell_role(f->cell, first.site) == RIC_ROLE_FREE ? &f->gaps.free : &f->gaps.impact;
-  int used = snprintf(orbit->reason, sizeof orbit->reason, "particle %zu passes its floor at t = %.6g",
-                      unit_cell_particle(f->cell, first.site), first.time);
+  int used = snprintf(orbit->reason, sizeof orbit->reason, "particle %zu %s its floor at t = %.6g",
+                      unit_cell_particle(f->cell, first.site), first.time > 0 ? "passes" : "is below", first.time);
   if (deepest->value < 0 && deepest == &f->gaps.free)
     snprintf(orbit->reason + used, sizeof orbit->reason - (size_t)used, "; smallest gap %.6g, particle %zu at t = %.6g",
              deepest->value, unit_cell_particle(f->cell, deepest->site), deepest->time);
@@ -184,10 +184,18 @@ ric_status verdict_find(motion *m, const unit_cell *cell, const ric_chain *chain
   return decided ? RIC_OK : judge_admissibility(m, &f, state, orbit, error);
 }
 
-void verdict_no_orbit(ric_orbit *orbit, ric_outcome outcome) {
+void verdict_without_state(ric_orbit *orbit, ric_outcome outcome) {
   orbit->outcome = outcome;
   for (size_t i = 0; i < 4 * orbit->particles + orbit->impacts; i++)
     orbit->q[i] = NAN; /* the one block behind all arrays */
   orbit->energy = orbit->residual = orbit->clearance = orbit->clearance_time = NAN;
   orbit->clearance_particle = -1;
+}
+
+void ric_orbit_fail(ric_orbit *orbit, const char *reason) {
+  verdict_without_state(orbit, RIC_FAILED);
+  orbit->condition = NAN;
+  orbit->mode = -1;
+  orbit->harmonic = 0;
+  snprintf(orbit->reason, sizeof orbit->reason, "%s", reason);
 }

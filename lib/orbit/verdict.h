@@ -13,6 +13,6 @@ ric_status verdict_find(motion *m, const unit_cell *cell, const ric_chain *chain
                         ric_error *error);
 
 /** Makes an orbit without a state: NaN everywhere, with this outcome. The reason is the caller's. */
-void verdict_no_orbit(ric_orbit *orbit, ric_outcome outcome);
+void verdict_without_state(ric_orbit *orbit, ric_outcome outcome);
 
 #endif

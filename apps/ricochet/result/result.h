@@ -1,7 +1,13 @@
-/* Result files: HDF5, written collectively under a temporary name, verified, renamed; and read back for `show`.
+/* Result files: HDF5, written by all ranks under a temporary name, verified, renamed; and read back for `show`.
  *
- * Every data set is chunked with the fletcher32 checksum, library version bounds V110, strings of fixed length, every
- * axis attached to a dimension scale in the root group. Everything that varies between runs sits in /run. */
+ * Every data set is chunked with the fletcher32 checksum, the file is of the HDF5 1.10 format throughout (metadata have
+ * checksums), strings are of fixed length, every axis is attached to a dimension scale in the root group, and carries
+ * its names once more as text in the attribute `axes`. Everything that varies between runs sits in /run, but for the
+ * root attributes `file_time` and `command`. h5py reads it, and xarray group by group, with no option and no helper;
+ * units are those of science ("s"), for xarray turns "seconds" into dates.
+ *
+ * Who does what: plan.h cuts the tables into chunks and blocks, skeleton.h makes all metadata in memory, space.h puts
+ * them on the disk with space for all rows, rows.h has every rank write its blocks, verify.h reads them back. */
 #ifndef RICOCHET_APP_RESULT_H
 #define RICOCHET_APP_RESULT_H
 
@@ -13,15 +19,20 @@
 #include "../study/study.h"
 #include "../task/table.h"
 
+#define RESULT_CREATOR "ricochet" /* root attribute `creator`: the file is ours */
 enum { RESULT_SCHEMA_VERSION = 1 };
 
-/** Rows [first, first + count) of a table, row-major bytes as table.h lays them out. 0 or an exit code. */
+/** Rows [first, first + count) of a table, as table.h lays them out. Each rank asks for other rows, at its own pace: no
+ *  collective operation may hide in here.
+ *  @param rows  [count][row_bytes], to be filled
+ *  @returns 0 or an exit code, with its reason in `why` */
 typedef int (*result_rows)(void *user, uint64_t first, uint64_t count, unsigned char *rows, message *why);
 
-/** A table to write: one row per task, or any other number of rows with a scale of its own. */
+/** A table to write: one row per task, or any other number of rows with a scale of its own. Tables may share a group.
+ */
 typedef struct result_table {
   const table *layout;
-  uint64_t rows;
+  uint64_t rows; /* may be 0; row_axis "task" means study_tasks rows */
   result_rows read;
   void *user;
 } result_table;
@@ -29,11 +40,11 @@ typedef struct result_table {
 /** What is written besides the tables. Strings are borrowed. */
 typedef struct result_header {
   const study *study;
-  const char *command;    /* the command line */
-  const char *git_sha;    /* of the program */
-  const char *libraries;  /* "GSL 2.7.1, FFTW 3.3.10, ..." */
+  const char *command;   /* the command line */
+  const char *git_sha;   /* of the program */
+  const char *libraries; /* "GSL 2.7.1, FFTW 3.3.10, ..." */
   const char *compiler;
-  const char *version;    /* of the program */
+  const char *version; /* of the program */
   /* /run: what varies between runs */
   double compute_seconds; /* from the first chunk taken to the last finished, over all ranks, this run */
   double total_seconds;   /* from the start of the program to the start of the writing */
@@ -41,29 +52,39 @@ typedef struct result_header {
   uint64_t tasks_computed, tasks_resumed;
 } result_header;
 
-/** Collective over `comm`: writes `path`.tmp, closes it, re-opens and verifies it, syncs, and, when `commit` agrees on
- *  rank 0, renames it to `path` and syncs the folder. On any failure the temporary file is removed and all ranks return
- *  the same code.
- *  @param commit  asked on rank 0 just before the rename (the lock is still ours?); 0 agrees */
+/** Collective over `comm`: writes `path`.tmp, re-opens and verifies it, syncs, and, when `commit` agrees on rank 0,
+ *  renames it to `path` and syncs the folder. On any failure the temporary file is removed and all ranks return the
+ * same code with the same message, that of the lowest rank that failed.
+ *
+ *  SIGXFSZ is to be ignored by then: a limit on the size of files is a failure like any other.
+ *  @param commit  asked on rank 0 just before the rename (the lock is still ours?); 0 agrees; NULL always does
+ *  @returns 0; EXIT_FILES when it cannot be written; EXIT_RUN when tables contradict each other or memory runs out;
+ * what `read` or `commit` returned */
 int result_write(MPI_Comm comm, const char *path, const result_header *header, const result_table *tables,
                  size_t table_count, int (*commit)(void *user, message *why), void *user, message *why);
 
-/** Reads every data set of the file through its checksums, on this process alone, without MPI.
- *  @returns 0 or EXIT_FILES naming what is damaged. */
+/** Reads every data set of the file through its checksums, and checks the study's text and the references to the axes,
+ *  on this process alone, without MPI_Init.
+ *  @returns 0 or EXIT_FILES naming what is damaged, also when `path` is no file of ours. */
 int result_verify(const char *path, message *why);
 
 /** Digest of the study that a result belongs to (root attribute `study_digest`).
  *  @returns 0, or EXIT_FILES when it is no result of this program. */
 int result_study_digest(const char *path, uint64_t *digest, message *why);
 
-/* What `show` prints, on this process alone. */
+/* What `show` prints on standard output, on this process alone, without MPI_Init. @returns 0; EXIT_FILES when the file
+ * is damaged or not ours, or the output cannot be written. */
 
 /** Prints what is in the file: creator, study title, sweeps with their ranges, every group with its data sets (type,
- *  shape, units, long name), counts of every enum column, special points. */
+ *  shape, units, long name), counts of every enum column, and up to 40 rows of tables that have no row per task, such
+ * as special points. */
 int result_show(const char *path, message *why);
 
-/** Prints the columns as CSV: for each group with a row per task, the swept parameters and every column with one value
- *  per row, enums by name. @param group NULL for the first such group. */
+/** Prints a group as CSV (RFC 4180, numbers to 17 digits, enums by name, a row of names first): the swept parameters
+ * and every column with one value per task. A group without a row per task comes with the rows of its first axis, and
+ *  without the swept parameters.
+ *  @param group  NULL for the first with a row per task
+ *  @returns also EXIT_USAGE when there is no such group, or nothing in it to print */
 int result_show_csv(const char *path, const char *group, message *why);
 
 #endif

@@ -91,6 +91,9 @@ typedef struct ric_orbit {
 RIC_API ric_status ric_orbit_init(ric_orbit *orbit, size_t particles, size_t impacts, ric_error *error);
 RIC_API void ric_orbit_clear(ric_orbit *orbit);
 
+/** Makes an orbit `failed` with this reason: NaN in every array, no clearance. For problems that never reach a solver. */
+RIC_API void ric_orbit_fail(ric_orbit *orbit, const char *reason);
+
 /** Workspace of the solvers and of everything that follows an orbit in time. Grows to what a problem needs; solving
  * again with the same numbers of particles, ends and impacts allocates nothing. Not to be shared between threads. */
 typedef struct ric_orbit_solver ric_orbit_solver;
@@ -107,6 +110,7 @@ RIC_API double ric_orbit_bytes(const ric_chain *chain, const ric_pattern *patter
  *  @param orbit  initialised for the chain's particles and the pattern's impacts
  *  @returns RIC_EINVAL for bad arguments, among them an impacting particle without a floor and a period <= 0;
  *           RIC_ELIMIT for the dense method beyond RIC_DENSE_PARTICLES; RIC_ESTOPPED. Everything else is an outcome.
+ *           The orbit of a call that returns an error is `failed`, with the error's message as its reason.
  *  Source: [JAP] (7)-(11). */
 RIC_API ric_status ric_orbit_solve(ric_orbit_solver *solver, const ric_chain *chain, const ric_pattern *pattern,
                                    double period, ric_orbit *orbit, ric_error *error);

@@ -1,0 +1,166 @@
+#include "result.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "reader.h"
+#include "text_out.h"
+
+enum {
+  BLOCK = 4096,   /* rows read at a time */
+  ALL_DIGITS = 17 /* a double printed with so many reads back as itself */
+};
+
+/* A column of the output, with a block of its values. */
+typedef struct csv_column {
+  const reader_set *set;
+  unsigned char *values;
+} csv_column;
+
+typedef struct csv {
+  const place *at;
+  hid_t file;
+  reader_group sweep, group;
+  csv_column *columns; /* [count] */
+  size_t count;
+  hsize_t rows;
+  char *text; /* [text_size] one value */
+  size_t text_size;
+} csv;
+
+/* RFC 4180: a field with a comma, a quote or a line break stands in quotes, quotes inside doubled. */
+static void put_field(const char *text) {
+  if (!strpbrk(text, ",\"\r\n")) {
+    fputs(text, stdout);
+    return;
+  }
+  putchar('"');
+  for (; *text; text++) {
+    if (*text == '"')
+      putchar('"');
+    putchar(*text);
+  }
+  putchar('"');
+}
+
+/* --- which columns --- */
+
+static bool has_rows_of(const reader_group *g, const char *axis) {
+  for (size_t k = 0; k < g->count; k++)
+    if (reader_is_column(&g->sets[k], axis))
+      return true;
+  return false;
+}
+
+/* The group asked for, or the first but /sweep with a value per task. */
+static int open_group(csv *c, const char *name) {
+  reader_names names;
+  char known[512] = "";
+  bool found = false;
+  int code = reader_list(c->at, c->file, H5I_GROUP, &names);
+  for (size_t i = 0; !code && !found && i < names.count; i++) {
+    size_t used = strlen(known);
+    snprintf(known + used, sizeof known - used, "%s%s", used ? ", " : "", names.at[i]);
+    if (name ? strcmp(names.at[i], name) != 0 : strcmp(names.at[i], "sweep") == 0)
+      continue;
+    code = reader_group_open(c->at, c->file, names.at[i], &c->group);
+    found = !code && (name || has_rows_of(&c->group, "task"));
+    if (!found)
+      reader_group_clear(&c->group);
+  }
+  reader_names_clear(&names);
+  if (code || found)
+    return code;
+  if (name)
+    return refuse(c->at->why, EXIT_USAGE, "%s: no group %s, expected one of %s", c->at->path, name, known);
+  return refuse(c->at->why, EXIT_USAGE, "%s: no group with a row per task", c->at->path);
+}
+
+static int add_columns(csv *c, const reader_group *g, const char *axis) {
+  for (size_t k = 0; k < g->count; k++) {
+    const reader_set *s = &g->sets[k];
+    if (!reader_is_column(s, axis))
+      continue;
+    if (c->count > 0 && s->shape[0] != c->rows)
+      return refuse(c->at->why, EXIT_FILES, "%s: %s has %llu rows, expected %llu", c->at->path, s->name,
+                    (unsigned long long)s->shape[0], (unsigned long long)c->rows);
+    c->rows = s->shape[0];
+    csv_column *added = &c->columns[c->count++];
+    *added = (csv_column){.set = s, .values = calloc(BLOCK, s->value_bytes)};
+    if (!added->values)
+      return refuse(c->at->why, EXIT_RUN, "%s: out of memory", c->at->path);
+    if (c->text_size < s->value_bytes + 1)
+      c->text_size = s->value_bytes + 1;
+  }
+  return 0;
+}
+
+/* A group without a row per task is printed along its first axis, and then without the swept parameters. */
+static int choose_columns(csv *c) {
+  char axis[256] = "task";
+  if (!has_rows_of(&c->group, axis) && c->group.count > 0)
+    reader_row_axis(&c->group.sets[0], axis);
+  c->text_size = 256; /* the longest word of an enum, and any number */
+  c->columns = calloc(c->sweep.count + c->group.count + 1, sizeof *c->columns);
+  if (!c->columns)
+    return refuse(c->at->why, EXIT_RUN, "%s: out of memory", c->at->path);
+  if (!has_rows_of(&c->group, axis))
+    return refuse(c->at->why, EXIT_USAGE, "%s: group %s has no column with one value per row", c->at->path,
+                  c->group.name);
+  int code = strcmp(c->group.name, "sweep") != 0 ? add_columns(c, &c->sweep, axis) : 0;
+  if (!code)
+    code = add_columns(c, &c->group, axis);
+  c->text = malloc(c->text_size);
+  return code || c->text ? code : refuse(c->at->why, EXIT_RUN, "%s: out of memory", c->at->path);
+}
+
+/* --- printing --- */
+
+static int print_block(csv *c, hsize_t first) {
+  hsize_t count = c->rows - first < BLOCK ? c->rows - first : BLOCK;
+  int code = 0;
+  for (size_t k = 0; !code && k < c->count; k++)
+    code = reader_rows(c->at, c->columns[k].set, first, count, c->columns[k].values);
+  for (hsize_t i = 0; !code && i < count; i++)
+    for (size_t k = 0; k < c->count; k++) {
+      const csv_column *from = &c->columns[k];
+      reader_value(from->set, from->values + i * from->set->value_bytes, ALL_DIGITS, c->text, c->text_size);
+      put_field(c->text);
+      putchar(k + 1 < c->count ? ',' : '\n');
+    }
+  return code;
+}
+
+static int print_columns(csv *c) {
+  int code = 0;
+  for (size_t k = 0; k < c->count; k++) {
+    put_field(c->columns[k].set->name);
+    putchar(k + 1 < c->count ? ',' : '\n');
+  }
+  for (hsize_t first = 0; !code && !ferror(stdout) && first < c->rows; first += BLOCK)
+    code = print_block(c, first);
+  return text_out_finish(code, c->at->why);
+}
+
+int result_show_csv(const char *path, const char *group, message *why) {
+  const place at = {path, why};
+  csv c = {.at = &at};
+  int code = reader_open(&at, path, &c.file);
+  if (code)
+    return code;
+  code = open_group(&c, group);
+  if (!code)
+    code = reader_group_open(&at, c.file, "sweep", &c.sweep);
+  if (!code)
+    code = choose_columns(&c);
+  if (!code)
+    code = print_columns(&c);
+  for (size_t k = 0; k < c.count; k++)
+    free(c.columns[k].values);
+  free(c.columns);
+  free(c.text);
+  reader_group_clear(&c.group);
+  reader_group_clear(&c.sweep);
+  return hdf5_close(&at, c.file, code);
+}

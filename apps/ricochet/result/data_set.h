@@ -1,0 +1,17 @@
+/* Data sets of a result as they are created: type, shape, chunks with a checksum, attributes, and their axes. */
+#ifndef RICOCHET_APP_DATA_SET_H
+#define RICOCHET_APP_DATA_SET_H
+
+#include "hdf5_call.h"
+#include "plan.h"
+
+/** Type of a column's values, the same in memory and in the file; the caller closes it. Negative on failure. */
+hid_t data_set_type(const column *c);
+
+/** Creates the axis `/name` with its values. */
+int data_set_create_scale(const place *at, hid_t file, const plan_scale *scale);
+
+/** Creates the data set of a column in its table's group, attached to its axes, which exist. */
+int data_set_create(const place *at, hid_t file, hid_t group, const result_table *t, const column *c);
+
+#endif

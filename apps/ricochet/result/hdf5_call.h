@@ -1,0 +1,41 @@
+/* Calls to HDF5 and what becomes of their failures: a message for the user instead of HDF5's error stack.
+ *
+ * HDF5 keeps the description of a failure only until its next call, closing a handle included. A failure is therefore
+ * turned into a message where it happens, before anything is cleaned up: functions that own handles use HDF5_TRY, whose
+ * failure jumps to `out`, where every handle is closed and a failing close counts as well. */
+#ifndef RICOCHET_APP_HDF5_CALL_H
+#define RICOCHET_APP_HDF5_CALL_H
+
+#include <hdf5.h>
+#include <hdf5_hl.h>
+
+#include "../study/message.h"
+
+/** The file that messages name, and where they go. */
+typedef struct place {
+  const char *path;
+  message *why;
+} place;
+
+/** Keeps HDF5 from printing its error stack. Called by every entry point of this room. */
+void hdf5_quiet(void);
+
+/** Formats "PATH: cannot WHAT: REASON", the reason being HDF5's innermost description of its last failure.
+ *  @returns EXIT_FILES */
+int hdf5_refuse(const place *at, const char *what, ...) __attribute__((format(printf, 2, 3)));
+
+/** Closes a handle of any kind; a negative one is none.
+ *  @param code  of the work done with it: a failure there keeps its message, a failing close becomes one otherwise
+ *  @returns `code`, or EXIT_FILES when only the close failed */
+int hdf5_close(const place *at, hid_t handle, int code);
+
+/** Makes `call`; a negative result sets `code` and jumps to `out` (both the calling function's own). */
+#define HDF5_TRY(at, call, ...)                                                                                        \
+  do {                                                                                                                 \
+    if ((call) < 0) {                                                                                                  \
+      code = hdf5_refuse((at), __VA_ARGS__);                                                                           \
+      goto out;                                                                                                        \
+    }                                                                                                                  \
+  } while (0)
+
+#endif

@@ -1,0 +1,148 @@
+#include "plan.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* --- the swept parameters as a table of their own, whose rows are computed where they are written --- */
+
+static int read_sweep_rows(void *user, uint64_t first, uint64_t count, unsigned char *rows, message *why) {
+  const plan *p = user;
+  const table *t = &p->sweep;
+  (void)why;
+  for (uint64_t i = 0; i < count; i++)
+    for (size_t k = 0; k < t->column_count; k++)
+      row_put_number(rows + i * t->row_bytes, &t->columns[k], study_sweep_value(p->header->study, k, first + i));
+  return 0;
+}
+
+static void lay_out_sweep(plan *p) {
+  const study *s = p->header->study;
+  p->sweep = (table){.group = "sweep", .row_axis = "task"};
+  for (size_t k = 0; k < study_sweeps(s); k++) {
+    const study_sweep *sweep = study_sweep_at(s, k);
+    const schema_entry *entry = schema_row(sweep->key);
+    p->sweep.columns[p->sweep.column_count++] = (column){
+        .name = sweep->name,
+        .type = COLUMN_F64,
+        .extent = 1,
+        .units = entry->units,
+        .long_name = entry->doc,
+        .source = "swept parameter of the study",
+    };
+  }
+  table_lay_out(&p->sweep);
+  p->tables[p->table_count++] =
+      (result_table){.layout = &p->sweep, .rows = study_tasks(s), .read = read_sweep_rows, .user = p};
+}
+
+/* --- axes --- */
+
+static int add_scale(plan *p, const char *name, uint64_t extent, message *why) {
+  for (size_t i = 0; i < p->scale_count; i++) {
+    const plan_scale *scale = &p->scales[i];
+    if (strcmp(scale->name, name) != 0)
+      continue;
+    if (scale->extent == extent)
+      return 0;
+    return refuse(why, EXIT_RUN, "axis %s = %llu in one column, %llu in another, expected one extent", name,
+                  (unsigned long long)scale->extent, (unsigned long long)extent);
+  }
+  p->scales[p->scale_count++] = (plan_scale){name, extent};
+  return 0;
+}
+
+static int add_scales_of(plan *p, const result_table *t, message *why) {
+  int code = add_scale(p, t->layout->row_axis, t->rows, why);
+  for (size_t k = 0; !code && k < t->layout->column_count; k++) {
+    const column *c = &t->layout->columns[k];
+    if (c->axis)
+      code = add_scale(p, c->axis, c->extent, why);
+  }
+  return code;
+}
+
+/* Axes and groups share the root group, and so must not share a name. */
+static int check_names(const plan *p, message *why) {
+  for (size_t i = 0; i < p->scale_count; i++) {
+    bool taken = strcmp(p->scales[i].name, "run") == 0;
+    for (size_t k = 0; k < p->table_count; k++)
+      taken = taken || strcmp(p->scales[i].name, p->tables[k].layout->group) == 0;
+    if (taken)
+      return refuse(why, EXIT_RUN, "axis %s has the name of a group, expected another", p->scales[i].name);
+  }
+  return 0;
+}
+
+/* --- the plan --- */
+
+int plan_init(plan *p, const char *path, const result_header *header, const result_table *tables, size_t table_count,
+              message *why) {
+  *p = (plan){.header = header};
+  p->partial = malloc(strlen(path) + sizeof ".tmp");
+  p->tables = calloc(table_count + 1, sizeof *p->tables);
+  p->scales = calloc(1 + (table_count + 1) * (1 + TABLE_MAX_COLUMNS), sizeof *p->scales);
+  if (!p->partial || !p->tables || !p->scales)
+    return refuse(why, EXIT_RUN, "%s: out of memory", path);
+  strcpy(p->partial, path);
+  strcat(p->partial, ".tmp");
+  for (size_t i = 0; i < table_count; i++)
+    p->tables[p->table_count++] = tables[i];
+  lay_out_sweep(p);
+  int code = add_scale(p, "task", study_tasks(header->study), why);
+  for (size_t i = 0; !code && i < p->table_count; i++)
+    code = add_scales_of(p, &p->tables[i], why);
+  return code ? code : check_names(p, why);
+}
+
+void plan_clear(plan *p) {
+  free(p->partial);
+  free(p->tables);
+  free(p->scales);
+  *p = (plan){0};
+}
+
+/* --- blocks and chunks --- */
+
+/* Largest power of two not above `limit`, which is at least 1. */
+static uint64_t power_of_two(uint64_t limit) {
+  uint64_t power = 1;
+  while (power <= limit / 2)
+    power *= 2;
+  return power;
+}
+
+uint64_t plan_block_rows(const table *t) {
+  uint64_t fit = t->row_bytes ? PLAN_BLOCK_BYTES / t->row_bytes : PLAN_BLOCK_BYTES;
+  return fit ? power_of_two(fit) : 1;
+}
+
+void plan_chunk(const table *t, const column *c, uint64_t rows, uint64_t chunk[2]) {
+  uint64_t fit = PLAN_CHUNK_BYTES / column_value_bytes(c);
+  uint64_t values = c->extent < fit ? c->extent : fit;
+  chunk[1] = values ? values : 1;
+  uint64_t height = power_of_two(fit / chunk[1]);
+  uint64_t block = plan_block_rows(t);
+  if (height > block)
+    height = block;
+  if (height > rows) /* then all rows are one block; HDF5 allows no chunk longer than the data set */
+    height = rows;
+  chunk[0] = height ? height : 1;
+}
+
+/* Indices: at most 24 bytes for a chunk, a few hundred for a data set (format of HDF5 1.10, "fixed array"). */
+static uint64_t column_bytes_at_most(const table *t, const column *c, uint64_t rows) {
+  uint64_t chunk[2];
+  plan_chunk(t, c, rows, chunk);
+  uint64_t chunks = ((rows + chunk[0] - 1) / chunk[0]) * ((c->extent + chunk[1] - 1) / chunk[1]);
+  return 1024 + chunks * (chunk[0] * chunk[1] * column_value_bytes(c) + 4 + 24);
+}
+
+uint64_t plan_bytes(const plan *p) {
+  uint64_t bytes = 0;
+  for (size_t i = 0; i < p->table_count; i++) {
+    const result_table *t = &p->tables[i];
+    for (size_t k = 0; k < t->layout->column_count; k++)
+      bytes += column_bytes_at_most(t->layout, &t->layout->columns[k], t->rows);
+  }
+  return bytes;
+}

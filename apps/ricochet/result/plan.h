@@ -1,0 +1,50 @@
+/* What goes where in a result file, worked out before anything is written: the tables (the caller's and the swept
+ * parameters), the axes they share, and how data sets are cut into chunks and rows into blocks.
+ *
+ * Every rank makes the same plan from the same tables; nothing in it depends on the number of ranks, so neither does
+ * the file. */
+#ifndef RICOCHET_APP_PLAN_H
+#define RICOCHET_APP_PLAN_H
+
+#include "result.h"
+
+enum {
+  PLAN_CHUNK_BYTES = 1 << 20, /* at most so much in a chunk: it fits HDF5's chunk cache of 1 MiB */
+  PLAN_BLOCK_BYTES = 4 << 20  /* rows that a rank reads and writes at a time; one row may be longer */
+};
+
+/** An axis: the data set `/name` with the values 0 .. extent - 1. */
+typedef struct plan_scale {
+  const char *name;
+  uint64_t extent;
+} plan_scale;
+
+typedef struct plan {
+  const result_header *header;
+  char *partial;        /* path of the file while it is written */
+  result_table *tables; /* [table_count] the caller's, then /sweep */
+  size_t table_count;
+  table sweep;
+  plan_scale *scales; /* [scale_count] distinct axes, "task" first */
+  size_t scale_count;
+} plan;
+
+/** Makes the plan for writing `tables` to `path`. Borrows header, study and tables, which must outlive it.
+ *  @param p  zeroed; plan_clear frees it, also after a failure
+ *  @returns 0, or EXIT_RUN when two tables disagree on the extent of an axis, an axis and a group share a name, or
+ *  memory runs out */
+int plan_init(plan *p, const char *path, const result_header *header, const result_table *tables, size_t table_count,
+              message *why);
+void plan_clear(plan *p);
+
+/** Bytes that all data sets take in the file at most, chunks, checksums and indices. */
+uint64_t plan_bytes(const plan *p);
+
+/** Rows of a block: a power of two, as many as PLAN_BLOCK_BYTES hold but at least one. */
+uint64_t plan_block_rows(const table *t);
+
+/** Chunk of a column [rows][values], both at least 1. Its rows divide those of a block (or hold all rows), so that no
+ *  two ranks ever touch the same chunk. */
+void plan_chunk(const table *t, const column *c, uint64_t rows, uint64_t chunk[2]);
+
+#endif

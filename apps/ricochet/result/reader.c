@@ -1,0 +1,272 @@
+#include "reader.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "attribute.h"
+#include "result.h"
+
+/* --- the file --- */
+
+static int check_creator(const place *at, hid_t file) {
+  char creator[64] = "";
+  int64_t schema = 0;
+  htri_t marked = H5Aexists(file, "creator");
+  int code = marked > 0 ? attribute_text_into(at, file, "creator", creator, sizeof creator) : 0;
+  if (code)
+    return code;
+  if (strcmp(creator, RESULT_CREATOR) != 0)
+    return refuse(at->why, EXIT_FILES, "%s: no result of ricochet (attribute creator = \"%s\")", at->path, creator);
+  code = attribute_integer(at, file, "schema_version", &schema);
+  if (!code && (schema < 1 || schema > RESULT_SCHEMA_VERSION))
+    code = refuse(at->why, EXIT_FILES, "%s: schema_version = %lld, this program reads 1 to %d", at->path,
+                  (long long)schema, RESULT_SCHEMA_VERSION);
+  return code;
+}
+
+int reader_open(const place *at, const char *path, hid_t *file) {
+  int code = 0;
+  struct stat about;
+  htri_t known;
+  *file = H5I_INVALID_HID;
+  hdf5_quiet();
+  if (stat(path, &about) != 0)
+    return refuse(at->why, EXIT_FILES, "%s: cannot open it: %s", at->path, strerror(errno));
+  if (!S_ISREG(about.st_mode))
+    return refuse(at->why, EXIT_FILES, "%s: no regular file", at->path);
+  HDF5_TRY(at, known = H5Fis_hdf5(path), "open it");
+  if (!known)
+    return refuse(at->why, EXIT_FILES, "%s: no HDF5 file, or its beginning is damaged", at->path);
+  HDF5_TRY(at, *file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT), "open it");
+  code = check_creator(at, *file);
+  if (code) {
+    code = hdf5_close(at, *file, code);
+    *file = H5I_INVALID_HID;
+  }
+out:
+  return code;
+}
+
+/* --- names --- */
+
+static int link_name(const place *at, hid_t group, hsize_t i, char **name) {
+  ssize_t length = H5Lget_name_by_idx(group, ".", H5_INDEX_CRT_ORDER, H5_ITER_INC, i, NULL, 0, H5P_DEFAULT);
+  if (length < 0)
+    return hdf5_refuse(at, "list it");
+  *name = malloc((size_t)length + 1);
+  if (!*name)
+    return refuse(at->why, EXIT_RUN, "%s: out of memory", at->path);
+  if (H5Lget_name_by_idx(group, ".", H5_INDEX_CRT_ORDER, H5_ITER_INC, i, *name, (size_t)length + 1, H5P_DEFAULT) >= 0)
+    return 0;
+  int code = hdf5_refuse(at, "list it");
+  free(*name);
+  return code;
+}
+
+/* Appends the i-th link when it leads to an object of the type asked for. */
+static int list_link(const place *at, hid_t group, hsize_t i, H5I_type_t type, reader_names *names) {
+  char *name = NULL;
+  int code = link_name(at, group, i, &name);
+  if (code)
+    return code;
+  hid_t object = H5Oopen(group, name, H5P_DEFAULT);
+  if (object < 0)
+    code = hdf5_refuse(at, "open %s", name);
+  if (object >= 0 && H5Iget_type(object) == type)
+    names->at[names->count++] = name;
+  else
+    free(name);
+  return hdf5_close(at, object, code);
+}
+
+int reader_list(const place *at, hid_t group, H5I_type_t type, reader_names *names) {
+  H5G_info_t info;
+  *names = (reader_names){0};
+  if (H5Gget_info(group, &info) < 0)
+    return hdf5_refuse(at, "list it");
+  names->at = calloc((size_t)info.nlinks + 1, sizeof *names->at);
+  if (!names->at)
+    return refuse(at->why, EXIT_RUN, "%s: out of memory", at->path);
+  int code = 0;
+  for (hsize_t i = 0; !code && i < info.nlinks; i++)
+    code = list_link(at, group, i, type, names);
+  if (code)
+    reader_names_clear(names);
+  return code;
+}
+
+void reader_names_clear(reader_names *names) {
+  for (size_t i = 0; i < names->count; i++)
+    free(names->at[i]);
+  free(names->at);
+  *names = (reader_names){0};
+}
+
+/* --- data sets --- */
+
+static int read_words(const place *at, reader_set *s) {
+  int count = H5Tget_nmembers(s->memory);
+  if (count < 0 || H5Tget_size(s->memory) != 1)
+    return refuse(at->why, EXIT_FILES, "%s: %s is an enum of another size than one byte", at->path, s->name);
+  for (unsigned i = 0; i < (unsigned)count; i++) {
+    signed char value;
+    char *word = H5Tget_member_name(s->memory, i);
+    if (!word || H5Tget_member_value(s->memory, i, &value) < 0)
+      return hdf5_refuse(at, "read the words of %s", s->name);
+    if (value >= 0 && !s->words[value])
+      s->words[value] = strdup(word);
+    if (H5free_memory(word) < 0)
+      return hdf5_refuse(at, "read the words of %s", s->name);
+  }
+  return 0;
+}
+
+static int read_type(const place *at, reader_set *s) {
+  int code = 0;
+  hid_t type = H5I_INVALID_HID;
+  HDF5_TRY(at, type = H5Dget_type(s->id), "read the type of %s", s->name);
+  H5T_class_t class = H5Tget_class(type);
+  s->type = class == H5T_FLOAT     ? READER_NUMBER
+            : class == H5T_INTEGER ? READER_INTEGER
+            : class == H5T_ENUM    ? READER_WORD
+            : class == H5T_STRING  ? READER_TEXT
+                                   : READER_OTHER;
+  if (s->type == READER_TEXT && H5Tis_variable_str(type) != 0)
+    s->type = READER_OTHER;
+  HDF5_TRY(at,
+           s->memory = H5Tcopy(s->type == READER_NUMBER    ? H5T_NATIVE_DOUBLE
+                               : s->type == READER_INTEGER ? H5T_NATIVE_INT64
+                                                           : type),
+           "read the type of %s", s->name);
+  s->value_bytes = H5Tget_size(s->memory);
+  if (s->type == READER_WORD)
+    code = read_words(at, s);
+out:
+  return hdf5_close(at, type, code);
+}
+
+static int read_shape(const place *at, reader_set *s) {
+  int code = 0;
+  hid_t space = H5I_INVALID_HID;
+  HDF5_TRY(at, space = H5Dget_space(s->id), "read the shape of %s", s->name);
+  HDF5_TRY(at, s->rank = H5Sget_simple_extent_dims(space, s->shape, NULL), "read the shape of %s", s->name);
+out:
+  return hdf5_close(at, space, code);
+}
+
+static int open_set(const place *at, hid_t group, reader_set *s) {
+  s->id = H5Dopen2(group, s->name, H5P_DEFAULT);
+  if (s->id < 0)
+    return hdf5_refuse(at, "open %s", s->name);
+  int code = read_type(at, s);
+  if (!code)
+    code = read_shape(at, s);
+  if (!code)
+    code = attribute_text_into(at, s->id, "axes", s->axes, sizeof s->axes);
+  if (!code)
+    code = attribute_text_into(at, s->id, "units", s->units, sizeof s->units);
+  return code ? code : attribute_text_into(at, s->id, "long_name", s->long_name, sizeof s->long_name);
+}
+
+static int open_sets(const place *at, hid_t group, reader_group *g) {
+  reader_names names;
+  int code = reader_list(at, group, H5I_DATASET, &names);
+  if (code)
+    return code;
+  g->sets = calloc(names.count + 1, sizeof *g->sets);
+  if (!g->sets)
+    code = refuse(at->why, EXIT_RUN, "%s: out of memory", at->path);
+  while (!code && g->count < names.count) {
+    reader_set *s = &g->sets[g->count];
+    s->id = s->memory = H5I_INVALID_HID;
+    s->name = names.at[g->count];
+    names.at[g->count++] = NULL; /* the set owns it now */
+    code = open_set(at, group, s);
+  }
+  reader_names_clear(&names);
+  return code;
+}
+
+int reader_group_open(const place *at, hid_t file, const char *name, reader_group *g) {
+  *g = (reader_group){.name = strdup(name)};
+  if (!g->name)
+    return refuse(at->why, EXIT_RUN, "%s: out of memory", at->path);
+  hid_t group = H5Gopen2(file, name, H5P_DEFAULT);
+  if (group < 0)
+    return hdf5_refuse(at, "open /%s", name);
+  return hdf5_close(at, group, open_sets(at, group, g));
+}
+
+void reader_group_clear(reader_group *g) {
+  message ignored; /* nothing was written through these handles */
+  const place nowhere = {"", &ignored};
+  for (size_t i = 0; i < g->count; i++) {
+    reader_set *s = &g->sets[i];
+    (void)hdf5_close(&nowhere, s->memory, 0);
+    (void)hdf5_close(&nowhere, s->id, 0);
+    for (int k = 0; k < READER_MAX_WORDS; k++)
+      free(s->words[k]);
+    free(s->name);
+  }
+  free(g->sets);
+  free(g->name);
+  *g = (reader_group){0};
+}
+
+void reader_row_axis(const reader_set *s, char *axis) {
+  snprintf(axis, sizeof s->axes, "%s", s->axes);
+  axis[strcspn(axis, " ")] = '\0';
+}
+
+bool reader_is_column(const reader_set *s, const char *axis) {
+  return s->rank == 1 && s->type != READER_OTHER && strcmp(s->axes, axis) == 0;
+}
+
+/* --- values --- */
+
+int reader_rows(const place *at, const reader_set *s, hsize_t first, hsize_t count, unsigned char *values) {
+  int code = 0;
+  hid_t in_file = H5I_INVALID_HID, in_memory = H5I_INVALID_HID;
+  HDF5_TRY(at, in_file = H5Dget_space(s->id), "read %s", s->name);
+  HDF5_TRY(at, H5Sselect_hyperslab(in_file, H5S_SELECT_SET, &first, NULL, &count, NULL), "read %s", s->name);
+  HDF5_TRY(at, in_memory = H5Screate_simple(1, &count, NULL), "read %s", s->name);
+  HDF5_TRY(at, H5Dread(s->id, s->memory, in_memory, in_file, H5P_DEFAULT, values), "read %s", s->name);
+out:
+  code = hdf5_close(at, in_memory, code);
+  return hdf5_close(at, in_file, code);
+}
+
+void reader_value(const reader_set *s, const unsigned char *value, int digits, char *text, size_t size) {
+  double number;
+  int64_t integer;
+  signed char word = (signed char)value[0];
+  switch (s->type) {
+  case READER_NUMBER:
+    memcpy(&number, value, sizeof number);
+    if (isnan(number)) /* printf would show the sign of some NaNs */
+      snprintf(text, size, "nan");
+    else
+      snprintf(text, size, "%.*g", digits, number);
+    break;
+  case READER_INTEGER:
+    memcpy(&integer, value, sizeof integer);
+    snprintf(text, size, "%lld", (long long)integer);
+    break;
+  case READER_WORD:
+    if (word >= 0 && s->words[word])
+      snprintf(text, size, "%s", s->words[word]);
+    else
+      snprintf(text, size, "%d", word);
+    break;
+  case READER_TEXT:
+    snprintf(text, size, "%.*s", (int)s->value_bytes, (const char *)value);
+    break;
+  case READER_OTHER:
+    snprintf(text, size, "?");
+    break;
+  }
+}

@@ -1,0 +1,63 @@
+/* A result read back: its groups, their data sets with what describes them, and rows of values as text.
+ *
+ * Serial, for any process, without MPI. Nothing is trusted: files may be cut short, damaged, or of another program. */
+#ifndef RICOCHET_APP_READER_H
+#define RICOCHET_APP_READER_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "hdf5_call.h"
+
+/** Opens a result for reading. @returns 0, or EXIT_FILES when it is none, of a later schema, or cut short. */
+int reader_open(const place *at, const char *path, hid_t *file);
+
+/** Names of the links in a group that lead to objects of one type (H5I_GROUP or H5I_DATASET), in the order made. */
+typedef struct reader_names {
+  char **at;
+  size_t count;
+} reader_names;
+
+int reader_list(const place *at, hid_t group, H5I_type_t type, reader_names *names);
+void reader_names_clear(reader_names *names);
+
+typedef enum reader_type { READER_NUMBER, READER_INTEGER, READER_WORD, READER_TEXT, READER_OTHER } reader_type;
+
+enum { READER_MAX_WORDS = 128 };
+
+typedef struct reader_set {
+  hid_t id, memory; /* data set; type of its values in memory */
+  reader_type type;
+  size_t value_bytes; /* in memory */
+  int rank;
+  hsize_t shape[H5S_MAX_RANK];
+  char *name;
+  char axes[256], units[64], long_name[256];
+  char *words[READER_MAX_WORDS]; /* of an enum, by value; NULL where it has none */
+} reader_set;
+
+typedef struct reader_group {
+  char *name;
+  reader_set *sets; /* [count] */
+  size_t count;
+} reader_group;
+
+/** Opens a group with all its data sets. @param g  zeroed; reader_group_clear also after a failure */
+int reader_group_open(const place *at, hid_t file, const char *name, reader_group *g);
+void reader_group_clear(reader_group *g);
+
+/** Whether the first axis of the set is `axis`, and its length is one value per row of it. */
+bool reader_is_column(const reader_set *s, const char *axis);
+
+/** Name of the set's first axis. @param axis  [256] */
+void reader_row_axis(const reader_set *s, char *axis);
+
+/** Reads rows [first, first + count) of a set with one value per row.
+ *  @param values  [count][value_bytes] */
+int reader_rows(const place *at, const reader_set *s, hsize_t first, hsize_t count, unsigned char *values);
+
+/** A value as text: numbers with `digits` significant digits, enums by name.
+ *  @param text  [size], cut to fit */
+void reader_value(const reader_set *s, const unsigned char *value, int digits, char *text, size_t size);
+
+#endif

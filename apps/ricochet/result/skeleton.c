@@ -1,0 +1,219 @@
+#include "skeleton.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "attribute.h"
+#include "data_set.h"
+
+/* --- properties --- */
+
+/* Attributes stay in the object's header, which has a checksum; the dense form keeps values over 4 kB without one. */
+enum { COMPACT_ATTRIBUTES = 64 };
+
+/* A group or file whose links keep the order they were made in, as `show` lists them. */
+static hid_t group_properties(hid_t class) {
+  hid_t list = H5Pcreate(class);
+  if (list < 0)
+    return list;
+  if (H5Pset_link_creation_order(list, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED) >= 0 &&
+      H5Pset_attr_phase_change(list, COMPACT_ATTRIBUTES, 0) >= 0 && H5Pset_obj_track_times(list, false) >= 0)
+    return list;
+  (void)H5Pclose(list);
+  return H5I_INVALID_HID;
+}
+
+hid_t skeleton_access(void) {
+  hid_t list = H5Pcreate(H5P_FILE_ACCESS);
+  if (list < 0 || H5Pset_libver_bounds(list, H5F_LIBVER_V110, H5F_LIBVER_V110) >= 0)
+    return list;
+  (void)H5Pclose(list);
+  return H5I_INVALID_HID;
+}
+
+/* --- groups --- */
+
+/* Opens a group, which an earlier table of the same group may have made. */
+static int open_group(const place *at, hid_t file, const char *name, hid_t *group) {
+  int code = 0;
+  hid_t list = H5I_INVALID_HID;
+  htri_t exists;
+  HDF5_TRY(at, exists = H5Lexists(file, name, H5P_DEFAULT), "create /%s", name);
+  if (exists) {
+    HDF5_TRY(at, *group = H5Gopen2(file, name, H5P_DEFAULT), "open /%s", name);
+    return 0;
+  }
+  HDF5_TRY(at, list = group_properties(H5P_GROUP_CREATE), "create /%s", name);
+  HDF5_TRY(at, *group = H5Gcreate2(file, name, H5P_DEFAULT, list, H5P_DEFAULT), "create /%s", name);
+out:
+  return hdf5_close(at, list, code);
+}
+
+static int create_table(const place *at, hid_t file, const result_table *t) {
+  hid_t group = H5I_INVALID_HID;
+  int code = open_group(at, file, t->layout->group, &group);
+  for (size_t k = 0; !code && k < t->layout->column_count; k++)
+    code = data_set_create(at, file, group, t, &t->layout->columns[k]);
+  return hdf5_close(at, group, code);
+}
+
+/* The grid of the sweeps: their names, and the number of points of each in order. */
+static int put_grid(const place *at, hid_t file, const study *s) {
+  hid_t group = H5I_INVALID_HID;
+  int64_t grid[STUDY_MAX_SWEEPS];
+  char names[STUDY_MAX_SWEEPS * (sizeof(study_sweep) + 1)] = "";
+  size_t sweeps = study_sweeps(s);
+  for (size_t k = 0; k < sweeps; k++) {
+    const study_sweep *sweep = study_sweep_at(s, k);
+    grid[k] = (int64_t)sweep->points;
+    strcat(strcat(names, k ? " " : ""), sweep->name);
+  }
+  int code = open_group(at, file, "sweep", &group);
+  if (!code)
+    code = attribute_put_text(at, group, "parameters", names);
+  if (!code && sweeps > 0)
+    code = attribute_put_list(at, group, "grid", H5T_STD_I64LE, H5T_NATIVE_INT64, sweeps, grid);
+  return hdf5_close(at, group, code);
+}
+
+/* --- the file's own attributes --- */
+
+/* ISO 8601. */
+static void utc_text(time_t at, char *text, size_t size) {
+  struct tm utc;
+  if (!gmtime_r(&at, &utc) || strftime(text, size, "%Y-%m-%dT%H:%M:%SZ", &utc) == 0)
+    snprintf(text, size, "unknown");
+}
+
+static int put_title(const place *at, hid_t file, const study *s) {
+  study_values *values = study_values_create(s);
+  if (!values)
+    return refuse(at->why, EXIT_RUN, "%s: out of memory", at->path);
+  int code = attribute_put_text(at, file, "title", value_word(values, KEY_TITLE));
+  study_values_destroy(&values);
+  return code;
+}
+
+static int put_root(const place *at, hid_t file, const result_header *header) {
+  char digest[17], now[32];
+  snprintf(digest, sizeof digest, "%016llx", (unsigned long long)study_digest(header->study));
+  utc_text(time(NULL), now, sizeof now);
+  const char *const texts[][2] = {
+      {"creator", RESULT_CREATOR},    {"creator_version", header->version},
+      {"study_digest", digest},       {"command", header->command},
+      {"git_sha", header->git_sha},   {"libraries", header->libraries},
+      {"compiler", header->compiler}, {"file_time", now},
+  };
+  int code = attribute_put_integer(at, file, "schema_version", RESULT_SCHEMA_VERSION);
+  for (size_t i = 0; !code && i < sizeof texts / sizeof texts[0]; i++)
+    code = attribute_put_text(at, file, texts[i][0], texts[i][1]);
+  if (!code)
+    code = put_title(at, file, header->study);
+  if (!code)
+    code = attribute_put_checked_text(at, file, "study", study_text(header->study));
+  return code;
+}
+
+/* Everything that differs between two runs of the same study sits here, and only here (but for file_time, command). */
+static int put_run(const place *at, hid_t file, const result_header *header) {
+  char host[256] = "unknown", started[32];
+  hid_t group = H5I_INVALID_HID;
+  if (gethostname(host, sizeof host - 1) != 0)
+    strcpy(host, "unknown");
+  utc_text(time(NULL) - (time_t)header->total_seconds, started, sizeof started);
+  int code = open_group(at, file, "run", &group);
+  if (!code)
+    code = attribute_put_text(at, group, "host", host);
+  if (!code)
+    code = attribute_put_text(at, group, "started", started);
+  if (!code)
+    code = attribute_put_integer(at, group, "ranks", header->ranks);
+  if (!code)
+    code = attribute_put_integer(at, group, "tasks_computed", (int64_t)header->tasks_computed);
+  if (!code)
+    code = attribute_put_integer(at, group, "tasks_resumed", (int64_t)header->tasks_resumed);
+  if (!code)
+    code = attribute_put_number(at, group, "compute_seconds", header->compute_seconds);
+  if (!code)
+    code = attribute_put_number(at, group, "total_seconds", header->total_seconds);
+  return hdf5_close(at, group, code);
+}
+
+/* --- the file --- */
+
+static int fill(const place *at, hid_t file, const plan *p) {
+  int code = put_root(at, file, p->header);
+  for (size_t i = 0; !code && i < p->scale_count; i++)
+    code = data_set_create_scale(at, file, &p->scales[i]);
+  for (size_t i = 0; !code && i < p->table_count; i++)
+    code = create_table(at, file, &p->tables[i]);
+  if (!code)
+    code = put_grid(at, file, p->header->study);
+  return code ? code : put_run(at, file, p->header);
+}
+
+/* The file in memory: HDF5's memory driver asks these for its memory, so that the bytes outlive the closing of the
+ * file. (H5Fget_file_image, of a file still open, gives a superblock whose checksum is wrong.) */
+
+static void *image_resize(void *bytes, size_t size, H5FD_file_image_op_t op, void *user) {
+  skeleton_image *image = user;
+  (void)op;
+  void *resized = realloc(bytes, size);
+  if (resized)
+    *image = (skeleton_image){resized, size};
+  return resized;
+}
+
+static void *image_malloc(size_t size, H5FD_file_image_op_t op, void *user) {
+  return image_resize(NULL, size, op, user);
+}
+
+static void *image_copy(void *to, const void *from, size_t size, H5FD_file_image_op_t op, void *user) {
+  (void)op;
+  (void)user;
+  return memcpy(to, from, size);
+}
+
+static herr_t image_keep(void *bytes, H5FD_file_image_op_t op, void *user) {
+  (void)bytes;
+  (void)op;
+  (void)user;
+  return 0;
+}
+
+static void *user_share(void *user) {
+  return user;
+}
+
+static herr_t user_keep(void *user) {
+  (void)user;
+  return 0;
+}
+
+static int create_in_memory(const place *at, skeleton_image *image, hid_t *file) {
+  int code = 0;
+  hid_t access = H5I_INVALID_HID, list = H5I_INVALID_HID;
+  enum { GROWTH = 1 << 16 }; /* bytes by which the file grows */
+  H5FD_file_image_callbacks_t callbacks = {image_malloc, image_copy, image_resize, image_keep,
+                                           user_share,   user_keep,  image};
+  HDF5_TRY(at, access = skeleton_access(), "make its image");
+  HDF5_TRY(at, H5Pset_fapl_core(access, GROWTH, false), "make its image");
+  HDF5_TRY(at, H5Pset_file_image_callbacks(access, &callbacks), "make its image");
+  HDF5_TRY(at, list = group_properties(H5P_FILE_CREATE), "make its image");
+  HDF5_TRY(at, *file = H5Fcreate(at->path, H5F_ACC_TRUNC, list, access), "make its image");
+out:
+  code = hdf5_close(at, list, code);
+  return hdf5_close(at, access, code);
+}
+
+int skeleton_make(const plan *p, const place *at, skeleton_image *image) {
+  hid_t file = H5I_INVALID_HID;
+  *image = (skeleton_image){NULL, 0};
+  int code = create_in_memory(at, image, &file);
+  if (!code)
+    code = fill(at, file, p);
+  return hdf5_close(at, file, code);
+}

@@ -1,0 +1,227 @@
+#include "verify.h"
+
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "attribute.h"
+#include "heap.h"
+#include "reader.h"
+#include "result.h"
+
+/* One verification under way. */
+typedef struct verifier {
+  const place *at;
+  hid_t file;
+  int part, parts;
+  uint64_t turn; /* slabs seen so far; every parts-th is ours */
+} verifier;
+
+/* --- data --- */
+
+/* A data set opened for reading, and how many of its rows are read at a time. */
+typedef struct slabs {
+  hid_t set, type, space;
+  int rank;
+  hsize_t shape[H5S_MAX_RANK];
+  hsize_t height;   /* rows of a slab: those of a chunk */
+  size_t row_bytes; /* of all values with the same first index */
+} slabs;
+
+static int read_slab(const verifier *v, const char *name, const slabs *s, hsize_t first, unsigned char *bytes) {
+  int code = 0;
+  hid_t memory = H5I_INVALID_HID;
+  hsize_t start[H5S_MAX_RANK] = {first}, count[H5S_MAX_RANK];
+  memcpy(count, s->shape, sizeof count);
+  count[0] = s->shape[0] - first < s->height ? s->shape[0] - first : s->height;
+  HDF5_TRY(v->at, memory = H5Screate_simple(s->rank, count, NULL), "read %s", name);
+  HDF5_TRY(v->at, H5Sselect_hyperslab(s->space, H5S_SELECT_SET, start, NULL, count, NULL), "read %s", name);
+  HDF5_TRY(v->at, H5Dread(s->set, s->type, memory, s->space, H5P_DEFAULT, bytes), "read %s", name);
+out:
+  return hdf5_close(v->at, memory, code);
+}
+
+static int read_slabs(verifier *v, const char *name, const slabs *s) {
+  int code = 0;
+  if (s->row_bytes == 0 || s->shape[0] == 0)
+    return 0;
+  unsigned char *bytes = malloc(s->height * s->row_bytes);
+  if (!bytes)
+    return refuse(v->at->why, EXIT_RUN, "%s: out of memory for %llu rows of %s", v->at->path,
+                  (unsigned long long)s->height, name);
+  for (hsize_t first = 0; !code && first < s->shape[0]; first += s->height)
+    if (v->turn++ % (uint64_t)v->parts == (uint64_t)v->part)
+      code = read_slab(v, name, s, first, bytes);
+  free(bytes);
+  return code;
+}
+
+/* --- how a data set is stored --- */
+
+/* Chunks with the checksum, without which reading would prove nothing; sets the height of a slab. */
+static int check_storage(const verifier *v, const char *name, slabs *s) {
+  int code = 0;
+  hsize_t chunk[H5S_MAX_RANK];
+  hid_t list = H5I_INVALID_HID;
+  unsigned flags;
+  size_t values = 0;
+  HDF5_TRY(v->at, list = H5Dget_create_plist(s->set), "read %s", name);
+  HDF5_TRY(v->at, H5Pget_chunk(list, s->rank, chunk), "read the chunks of %s", name);
+  HDF5_TRY(v->at, H5Pget_filter_by_id2(list, H5Z_FILTER_FLETCHER32, &flags, &values, NULL, 0, NULL, NULL),
+           "find the checksum of %s", name);
+  s->height = chunk[0];
+  s->row_bytes = H5Tget_size(s->type);
+  for (int i = 1; i < s->rank; i++)
+    s->row_bytes *= s->shape[i];
+out:
+  return hdf5_close(v->at, list, code);
+}
+
+/* Every axis hangs on the scale that the attribute `axes` names; a scale is its own axis. */
+static int check_axes(const verifier *v, const char *name, const slabs *s) {
+  char axes[256], *rest = axes;
+  hid_t scale = H5I_INVALID_HID;
+  htri_t good = 1;
+  int code = attribute_text_into(v->at, s->set, "axes", axes, sizeof axes);
+  for (int i = 0; !code && good && i < s->rank; i++) {
+    char *axis = rest;
+    rest += strcspn(rest, " ");
+    if (*rest)
+      *rest++ = '\0';
+    HDF5_TRY(v->at, scale = H5Dopen2(v->file, axis[0] ? axis : "?", H5P_DEFAULT), "find axis %d of %s", i, name);
+    if (strcmp(axis, name) == 0)
+      good = H5DSis_scale(scale);
+    else
+      good = H5DSis_attached(s->set, scale, (unsigned)i);
+    HDF5_TRY(v->at, good, "find axis %d of %s", i, name);
+    code = hdf5_close(v->at, scale, 0);
+    scale = H5I_INVALID_HID;
+  }
+  if (!code && !good)
+    code = refuse(v->at->why, EXIT_FILES, "%s: an axis of %s has lost its scale", v->at->path, name);
+out:
+  return hdf5_close(v->at, scale, code);
+}
+
+static int check_set(verifier *v, const char *name) {
+  int code = 0;
+  slabs s = {.set = H5I_INVALID_HID, .type = H5I_INVALID_HID, .space = H5I_INVALID_HID};
+  HDF5_TRY(v->at, s.set = H5Dopen2(v->file, name, H5P_DEFAULT), "open %s", name);
+  HDF5_TRY(v->at, s.type = H5Dget_type(s.set), "read %s", name);
+  HDF5_TRY(v->at, s.space = H5Dget_space(s.set), "read %s", name);
+  HDF5_TRY(v->at, s.rank = H5Sget_simple_extent_dims(s.space, s.shape, NULL), "read %s", name);
+  code = check_storage(v, name, &s);
+  if (!code)
+    code = check_axes(v, name, &s);
+  if (!code)
+    code = read_slabs(v, name, &s);
+out:
+  code = hdf5_close(v->at, s.space, code);
+  code = hdf5_close(v->at, s.type, code);
+  return hdf5_close(v->at, s.set, code);
+}
+
+/* --- the whole file --- */
+
+static int check_sets(verifier *v, const char *group_name) {
+  reader_names names = {0};
+  hid_t group = H5Gopen2(v->file, group_name, H5P_DEFAULT);
+  if (group < 0)
+    return hdf5_refuse(v->at, "open %s", group_name);
+  int code = reader_list(v->at, group, H5I_DATASET, &names);
+  for (size_t i = 0; !code && i < names.count; i++) {
+    char name[1024];
+    bool root = strcmp(group_name, "/") == 0;
+    snprintf(name, sizeof name, "%s%s%s", root ? "" : group_name, root ? "" : "/", names.at[i]);
+    code = check_set(v, name);
+  }
+  reader_names_clear(&names);
+  return hdf5_close(v->at, group, code);
+}
+
+static int check_groups(verifier *v) {
+  reader_names names;
+  int code = reader_list(v->at, v->file, H5I_GROUP, &names);
+  for (size_t i = 0; !code && i < names.count; i++)
+    code = check_sets(v, names.at[i]);
+  reader_names_clear(&names);
+  return code;
+}
+
+static int check_study(const verifier *v) {
+  char *text;
+  int code = attribute_checked_text(v->at, v->file, "study", &text);
+  free(text);
+  return code;
+}
+
+/* --- what was to be written --- */
+
+static int check_shape(const verifier *v, const char *group, const char *name, int rank, const hsize_t *expected) {
+  int code = 0;
+  hid_t set = H5I_INVALID_HID, space = H5I_INVALID_HID;
+  hsize_t shape[H5S_MAX_RANK];
+  char path[512];
+  snprintf(path, sizeof path, "%s/%s", group, name);
+  HDF5_TRY(v->at, set = H5Dopen2(v->file, path, H5P_DEFAULT), "open %s", path);
+  HDF5_TRY(v->at, space = H5Dget_space(set), "read %s", path);
+  if (H5Sget_simple_extent_ndims(space) != rank || H5Sget_simple_extent_dims(space, shape, NULL) != rank ||
+      memcmp(shape, expected, (size_t)rank * sizeof *shape) != 0)
+    code = refuse(v->at->why, EXIT_FILES, "%s: %s was written with another shape than it has", v->at->path, path);
+out:
+  code = hdf5_close(v->at, space, code);
+  return hdf5_close(v->at, set, code);
+}
+
+static int check_expected(const verifier *v, const plan *expected) {
+  int code = 0;
+  for (size_t i = 0; !code && i < expected->scale_count; i++)
+    code = check_shape(v, "", expected->scales[i].name, 1, &(hsize_t){expected->scales[i].extent});
+  for (size_t i = 0; i < expected->table_count; i++) {
+    const result_table *t = &expected->tables[i];
+    for (size_t k = 0; !code && k < t->layout->column_count; k++) {
+      const column *c = &t->layout->columns[k];
+      code = check_shape(v, t->layout->group, c->name, c->axis ? 2 : 1, (const hsize_t[2]){t->rows, c->extent});
+    }
+  }
+  return code;
+}
+
+int verify_part(const place *at, const char *path, const plan *expected, int part, int parts) {
+  verifier v = {.at = at, .part = part, .parts = parts};
+  int code = reader_open(at, path, &v.file);
+  if (code)
+    return code;
+  code = heap_check(at, v.file, path); /* before check_axes makes HDF5 read the heaps */
+  if (!code)
+    code = check_study(&v);
+  if (!code && expected)
+    code = check_expected(&v, expected);
+  if (!code)
+    code = check_sets(&v, "/");
+  if (!code)
+    code = check_groups(&v);
+  return hdf5_close(at, v.file, code);
+}
+
+int result_verify(const char *path, message *why) {
+  const place at = {path, why};
+  return verify_part(&at, path, NULL, 0, 1);
+}
+
+int result_study_digest(const char *path, uint64_t *digest, message *why) {
+  const place at = {path, why};
+  char text[32], *end;
+  hid_t file;
+  int code = reader_open(&at, path, &file);
+  if (code)
+    return code;
+  code = attribute_text_into(&at, file, "study_digest", text, sizeof text);
+  if (!code) {
+    *digest = strtoull(text, &end, 16);
+    if (end != text + 16 || *end)
+      code = refuse(why, EXIT_FILES, "%s: study_digest = \"%s\", expected 16 hexadecimal digits", path, text);
+  }
+  return hdf5_close(&at, file, code);
+}

@@ -1,0 +1,119 @@
+#include "result.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <limits.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "hdf5_call.h"
+#include "plan.h"
+#include "rows.h"
+#include "space.h"
+#include "verify.h"
+
+typedef struct writer {
+  MPI_Comm comm;
+  int rank, ranks;
+  plan plan;
+  place at;
+} writer;
+
+/* --- agreement --- */
+
+/* Collective: when any rank failed, all return the code of the lowest such rank and hold its message. */
+static int agree(const writer *w, int code) {
+  int mine = code ? w->rank : INT_MAX, lowest = INT_MAX;
+  if (MPI_Allreduce(&mine, &lowest, 1, MPI_INT, MPI_MIN, w->comm) != MPI_SUCCESS)
+    return refuse(w->at.why, EXIT_RUN, "%s: ranks lost contact with each other", w->at.path);
+  if (lowest == INT_MAX)
+    return 0;
+  if (MPI_Bcast(&code, 1, MPI_INT, lowest, w->comm) != MPI_SUCCESS ||
+      MPI_Bcast(w->at.why->text, (int)sizeof w->at.why->text, MPI_CHAR, lowest, w->comm) != MPI_SUCCESS)
+    return refuse(w->at.why, EXIT_RUN, "%s: ranks lost contact with each other", w->at.path);
+  return code;
+}
+
+/* Collective: each rank looks whether it has the file that rank 0 made. */
+static int file_in_sight(const writer *w) {
+  struct stat mine;
+  long long size = -1;
+  int handle = open(w->plan.partial, O_RDWR);
+  int failed = handle < 0 || fstat(handle, &mine) != 0 ? errno : 0;
+  if (handle >= 0)
+    close(handle); /* nothing was written through it */
+  if (!failed)
+    size = (long long)mine.st_size;
+  long long first = size;
+  if (MPI_Bcast(&first, 1, MPI_LONG_LONG, 0, w->comm) != MPI_SUCCESS)
+    return refuse(w->at.why, EXIT_RUN, "%s: ranks lost contact with each other", w->at.path);
+  if (failed)
+    return refuse(w->at.why, EXIT_FILES, "%s: rank %d cannot open it: %s", w->at.path, w->rank, strerror(failed));
+  if (size != first)
+    return refuse(w->at.why, EXIT_FILES, "%s: rank %d sees %lld bytes, rank 0 %lld: is the folder shared by all nodes?",
+                  w->at.path, w->rank, size, first);
+  return 0;
+}
+
+/* --- publication --- */
+
+static int sync_at(const writer *w, const char *path) {
+  int handle = open(path, O_RDONLY);
+  if (handle < 0)
+    return refuse(w->at.why, EXIT_FILES, "%s: cannot open %s: %s", w->at.path, path, strerror(errno));
+  bool synced = fsync(handle) == 0 || errno == EINVAL; /* EINVAL: a file system without it, for folders */
+  int failed = synced ? 0 : errno;
+  if (close(handle) != 0 && synced)
+    failed = errno;
+  return failed ? refuse(w->at.why, EXIT_FILES, "%s: cannot sync %s: %s", w->at.path, path, strerror(failed)) : 0;
+}
+
+static int sync_folder(const writer *w) {
+  const char *slash = strrchr(w->at.path, '/');
+  if (!slash)
+    return sync_at(w, ".");
+  size_t length = slash == w->at.path ? 1 : (size_t)(slash - w->at.path);
+  char *folder = strndup(w->at.path, length);
+  if (!folder)
+    return refuse(w->at.why, EXIT_RUN, "%s: out of memory", w->at.path);
+  int code = sync_at(w, folder);
+  free(folder);
+  return code;
+}
+
+/* Rank 0: the verified file gets its name, after its bytes and before its folder are safe on the disk. */
+static int publish(const writer *w, int (*commit)(void *user, message *why), void *user) {
+  int code = sync_at(w, w->plan.partial);
+  if (!code && commit)
+    code = commit(user, w->at.why);
+  if (!code && rename(w->plan.partial, w->at.path) != 0)
+    code = refuse(w->at.why, EXIT_FILES, "%s: cannot rename %s: %s", w->at.path, w->plan.partial, strerror(errno));
+  return code ? code : sync_folder(w);
+}
+
+int result_write(MPI_Comm comm, const char *path, const result_header *header, const result_table *tables,
+                 size_t table_count, int (*commit)(void *user, message *why), void *user, message *why) {
+  writer w = {.comm = comm, .at = {path, why}};
+  hdf5_quiet();
+  MPI_Comm_rank(comm, &w.rank);
+  MPI_Comm_size(comm, &w.ranks);
+  int code = agree(&w, plan_init(&w.plan, path, header, tables, table_count, why));
+  if (!code)
+    code = agree(&w, w.rank == 0 ? space_create(&w.plan, &w.at) : 0);
+  if (!code)
+    code = agree(&w, file_in_sight(&w));
+  if (!code)
+    code = agree(&w, rows_write(&w.plan, &w.at, w.rank, w.ranks));
+  if (!code)
+    code = agree(&w, verify_part(&w.at, w.plan.partial, &w.plan, w.rank, w.ranks));
+  if (!code)
+    code = agree(&w, w.rank == 0 ? publish(&w, commit, user) : 0);
+  if (code && w.rank == 0 && w.plan.partial)
+    unlink(w.plan.partial); /* absent when it failed before there was one */
+  plan_clear(&w.plan);
+  return code;
+}

@@ -1,0 +1,111 @@
+"""Reads the made-up results that 1, 2, 3 and 4 ranks wrote with h5py and xarray, neither with an option or a helper.
+
+result_contents.py FILE...: asserts that all files are equal outside /run, that every axis hangs on a scale in the root
+group, that every data set has its checksum, and that xarray opens every group with the right dimensions.
+"""
+import math
+import sys
+
+import h5py
+import numpy
+import xarray
+
+VARY = {"/": {"file_time", "command"}}
+DIMENSIONS = {
+    "/": {"task": 20, "particle": 6, "impact": 0, "special_point": 50, "none": 0},
+    "orbits": {"task": 20, "particle": 6, "impact": 0},
+    "special": {"special_point": 50},
+    "nothing": {"none": 0},
+    "sweep": {"task": 20},
+    "run": {},
+}
+
+
+def contents(path):
+    """Everything in a file outside /run: attributes and data by name, as bytes with their types and shapes."""
+    found = {}
+
+    def take(name, thing):
+        if name == "run":
+            return
+        for key, value in thing.attrs.items():
+            if key in VARY.get(name, ()) or key in ("DIMENSION_LIST", "REFERENCE_LIST"):
+                continue
+            array = numpy.asarray(value)
+            found[name, key] = (str(array.dtype), array.shape, array.tobytes())
+        if isinstance(thing, h5py.Dataset):
+            found[name, None] = (thing.dtype.str, thing.shape, thing.chunks, thing[...].tobytes())
+
+    with h5py.File(path) as file:
+        take("/", file)
+        file.visititems(take)
+    return found
+
+
+def check_data_sets(file):
+    def check(name, thing):
+        if not isinstance(thing, h5py.Dataset):
+            return
+        assert thing.fletcher32, f"{name} has no checksum"
+        assert thing.chunks, f"{name} is not chunked"
+        for key in ("units", "long_name", "source", "axes"):
+            assert key in thing.attrs, f"{name} lacks {key}"
+        if h5py.h5ds.is_scale(thing.id):
+            assert thing.parent.name == "/" and (thing[...] == numpy.arange(thing.size)).all(), name
+            return
+        axes = thing.attrs["axes"].decode().split()
+        assert len(axes) == thing.ndim, name
+        for axis, dimension in zip(axes, thing.dims):
+            assert [scale.name for scale in dimension.values()] == ["/" + axis], (name, axis)
+
+    file.visititems(check)
+
+
+def check_values(file):
+    assert file.attrs["creator"] == b"ricochet" and file.attrs["schema_version"] == 1
+    assert file.attrs["title"].decode() == "made up, à la carte"
+    assert file.attrs["study_digest"] == b"0123456789abcdf1"
+    assert file.attrs["study"].decode().startswith("kind: orbits")
+    assert list(file["sweep"].attrs["grid"]) == [5, 4]
+    assert file["sweep"].attrs["parameters"] == b"model.gamma model.floor[3]"
+    numpy.testing.assert_array_equal(file["sweep/model.gamma"], 0.1 * numpy.repeat(numpy.arange(5.0), 4))
+    numpy.testing.assert_array_equal(file["sweep/model.floor[3]"], numpy.tile([-1.0, -2, -3, -4], 5))
+    words = h5py.check_enum_dtype(file["orbits/outcome"].dtype)
+    assert words == {"admissible": 0, "inadmissible": 1, "grazing": 2, "failed": 3}, words
+    numpy.testing.assert_array_equal(file["orbits/outcome"], numpy.arange(20) ** 2 % 4)
+    q = numpy.sin(numpy.arange(20.0)[:, None] + 0.001 * numpy.arange(6))
+    q[3::7, 0], q[4::7, 0] = math.nan, -math.inf
+    numpy.testing.assert_allclose(file["orbits/q"], q, rtol=1e-14)
+    assert file["orbits/reason"][2].decode() == "café" and len(file["orbits/reason"][3]) == 32
+    assert file["orbits/clearance_particle"][7] == 7 * 1000003 - 5
+    assert file["orbits/impulse"].shape == (20, 0)
+
+
+def check_xarray(path):
+    for group, dimensions in DIMENSIONS.items():
+        with xarray.open_dataset(path, engine="h5netcdf", group=group) as opened:
+            assert dict(opened.sizes) == dimensions, (group, dict(opened.sizes))
+            opened.load()
+    with xarray.open_dataset(path, engine="h5netcdf", group="orbits") as orbits:
+        assert orbits.q.dims == ("task", "particle") and orbits.energy.dims == ("task",)
+        assert orbits.outcome.attrs["flag_meanings"].split()[1] == "inadmissible"
+    with xarray.open_dataset(path, engine="h5netcdf", group="run") as run:
+        assert run.attrs["ranks"] >= 1 and run.attrs["tasks_computed"] == 20 and "host" in run.attrs
+
+
+def main(paths):
+    first = contents(paths[0])
+    for ranks, path in enumerate(paths, start=1):
+        other = contents(path)
+        assert first.keys() == other.keys(), first.keys() ^ other.keys()
+        for key, value in first.items():
+            assert value == other[key], f"{path} differs from {paths[0]} in {key}"
+        with h5py.File(path) as file:
+            check_data_sets(file)
+            check_values(file)
+            assert file["run"].attrs["ranks"] == ranks
+        check_xarray(path)
+    print(f"{len(first)} attributes and data sets equal in {len(paths)} files")
+
+
+main(sys.argv[1:])
