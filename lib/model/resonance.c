@@ -7,6 +7,9 @@
 
 static const double pi = 3.14159265358979323846;
 
+/* Per mode. A range with more is a mistake, and would take minutes to list. */
+static const double most_harmonics = 1e6;
+
 /* The list under construction: counts everything, keeps what fits. */
 typedef struct collection {
   double low, high;
@@ -61,6 +64,13 @@ ric_status ric_chain_resonances(const ric_chain *chain, ric_along along, double 
     return ric_fail(error, RIC_EINVAL, "range [%g, %g], expected 0 <= low <= high < infinity", low, high);
   if (along == RIC_ALONG_GAMMA && !(period > 0 && period < INFINITY))
     return ric_fail(error, RIC_EINVAL, "period = %g, expected 0 < period < infinity", period);
+  ric_chain extreme = *chain;
+  if (along == RIC_ALONG_GAMMA)
+    extreme.gamma = high;
+  double harmonics = ric_chain_frequency_max(&extreme) * (along == RIC_ALONG_GAMMA ? period : high) / (2 * pi);
+  if (!(harmonics <= most_harmonics))
+    return ric_fail(error, RIC_ELIMIT, "%.3g oscillations per period, expected at most %.3g", harmonics,
+                    most_harmonics);
   collection c = {.low = low, .high = high, .list = list, .capacity = capacity};
   for (size_t mode = 0; mode < chain->particles; mode++)
     if (along == RIC_ALONG_GAMMA)

@@ -4,7 +4,6 @@
 #include <stdlib.h>
 
 #include <gsl/gsl_eigen.h>
-#include <gsl/gsl_linalg.h>
 #include <gsl/gsl_sort_vector.h>
 
 #include "model/image_ring.h"
@@ -39,8 +38,7 @@ static ric_status reserve(contact_system *c, size_t m, ric_error *error) {
   return RIC_OK;
 }
 
-/* Displacement u_ks of a mode at a contact, as the contact equations see it. */
-static double at_contact(const unit_cell *cell, const border_mode *b, const contact *k) {
+double contact_shape(const unit_cell *cell, const border_mode *b, const contact *k) {
   double shape = ric_chain_mode_shape(&cell->chain, b->mode, k->site);
   return k->role == RIC_ROLE_HALF && b->harmonic % 2 == 1 ? -shape : shape;
 }
@@ -57,10 +55,8 @@ static void list_border(contact_system *c, const unit_cell *cell, const response
       size_t modes[2], count = response_modes(&cell->chain, w->wave, modes);
       group += !exact;
       for (size_t k = 0; k < count; k++)
-        c->border[c->border_count++] = (border_mode){.mode = modes[k],
-                                                     .harmonic = w->harmonic,
-                                                     .stiffness = exact ? 0 : 2 * w->omega * sin(w->distance),
-                                                     .group = group};
+        c->border[c->border_count++] = (border_mode){
+            .mode = modes[k], .harmonic = w->harmonic, .stiffness = 2 * w->omega * sin(w->distance), .group = group};
     }
 }
 
@@ -98,7 +94,7 @@ ric_status contact_visible(const unit_cell *cell, const border_mode *modes, size
   for (size_t k = 0; k < cell->impacts; k++) {
     double u[BORDER_MODES];
     for (size_t a = 0; a < count; a++)
-      u[a] = at_contact(cell, &modes[a], &cell->contacts[k]);
+      u[a] = contact_shape(cell, &modes[a], &cell->contacts[k]);
     for (size_t i = 0; i < count * count; i++)
       gram[i] += u[i / count] * u[i % count];
   }
@@ -136,26 +132,30 @@ static double entry(const unit_cell *cell, const response *r, const contact *k, 
 }
 
 /* One border column and row: a combination at the contacts, scaled to the size of the responses. Its weights are scaled
- * along, so that the solution is in units of the modes. */
+ * along, so that the solution is in units of the modes. Combinations of a group share stiffness where their modes
+ * differ in it, within the tolerance of a resonance. */
 static void border(contact_system *c, const unit_cell *cell, size_t column, size_t size, double scale) {
   size_t m = cell->impacts, at = m + column;
-  double largest = 0, stiffness = 0;
+  double largest = 0;
   for (size_t k = 0; k < m; k++) {
     double u = 0;
     for (size_t a = 0; a < c->border_count; a++)
-      if (c->weights[a][column] != 0) {
-        u += c->weights[a][column] * at_contact(cell, &c->border[a], &cell->contacts[k]);
-        stiffness = c->border[a].stiffness;
-      }
+      if (c->weights[a][column] != 0)
+        u += c->weights[a][column] * contact_shape(cell, &c->border[a], &cell->contacts[k]);
     c->matrix[k * size + at] = u;
     largest = fmax(largest, fabs(u));
   }
   double unit = scale / largest;
   for (size_t k = 0; k < m; k++)
     c->matrix[at * size + k] = c->matrix[k * size + at] *= unit;
-  c->matrix[at * size + at] = -stiffness * unit * unit;
   for (size_t a = 0; a < c->border_count; a++)
     c->weights[a][column] *= unit;
+  for (size_t other = 0; other <= column; other++) {
+    double stiffness = 0;
+    for (size_t a = 0; a < c->border_count; a++)
+      stiffness += c->weights[a][other] * c->border[a].stiffness * c->weights[a][column];
+    c->matrix[at * size + m + other] = c->matrix[(m + other) * size + at] = -stiffness;
+  }
 }
 
 /* The symmetric matrix [size][size] and the right-hand side. */
@@ -174,40 +174,31 @@ static void assemble(contact_system *c, const unit_cell *cell, const response *r
     border(c, cell, column, size, r->scale);
 }
 
-/* QR with column pivoting, which also estimates the inverse's norm: condition = scale of the free responses times it.
- */
-static ric_status factor_and_solve(contact_system *c, size_t size, double scale, ric_error *error) {
-  gsl_matrix_view a = gsl_matrix_view_array(c->matrix, size, size);
-  gsl_vector_view tau = gsl_vector_view_array(c->tau, size), norm = gsl_vector_view_array(c->norm, size);
-  gsl_vector_view x = gsl_vector_view_array(c->solution, size), b = gsl_vector_view_array(c->rhs, size);
-  gsl_vector_view work = gsl_vector_view_array(c->work, 3 * size);
-  gsl_permutation p = {.size = size, .data = c->permutation};
-  int sign;
-  double rcond = 0, norm1 = 0;
-  int code = gsl_linalg_QRPT_decomp(&a.matrix, &tau.vector, &p, &sign, &norm.vector);
-  for (size_t j = 0; j < size; j++) {
-    double sum = 0;
-    for (size_t i = 0; i <= j; i++)
-      sum += fabs(c->matrix[i * size + j]);
-    norm1 = fmax(norm1, sum);
-  }
-  double last = c->matrix[size * size - 1];
-  if (!code && last != 0)
-    code = gsl_linalg_QRPT_rcond(&a.matrix, &rcond, &work.vector);
-  c->condition = rcond > 0 ? scale / (rcond * norm1) : INFINITY;
-  if (!code && rcond > 0)
-    code = gsl_linalg_QRPT_solve(&a.matrix, &tau.vector, &p, &b.vector, &x.vector);
-  return code ? ric_fail(error, RIC_ENUMERIC, "contact matrix of size %zu: %s", size, gsl_strerror(code)) : RIC_OK;
+/* The smallest of the solutions of a singular system, if it has any. */
+static ric_status solve_singular(contact_system *c, const unit_cell *cell, const response *r,
+                                 const ric_orbit_options *options, double last, ric_error *error) {
+  double residual;
+  assemble(c, cell, r); /* the factorisation has overwritten it */
+  RIC_TRY(linear_least_norm(c->matrix, cell->impacts + c->column_count, c->rhs, c->solution,
+                            r->scale / options->singular_condition, last, &residual, error));
+  c->outcome.solvable = residual <= options->residual_tol;
+  return RIC_OK;
 }
 
-ric_status contact_solve(contact_system *c, const unit_cell *cell, const response *r, double resonance_tol, double *p,
-                         ric_error *error) {
+ric_status contact_solve(contact_system *c, const unit_cell *cell, const response *r, const ric_orbit_options *options,
+                         double *p, ric_error *error) {
   size_t m = cell->impacts;
+  linear_factor factor;
   RIC_TRY(reserve(c, m, error));
-  list_border(c, cell, r, resonance_tol);
+  list_border(c, cell, r, options->resonance_tol);
   RIC_TRY(combine(c, cell, error));
   assemble(c, cell, r);
-  RIC_TRY(factor_and_solve(c, m + c->column_count, r->scale, error));
+  linear_work work = {.tau = c->tau, .norm = c->norm, .work = c->work, .permutation = c->permutation};
+  RIC_TRY(linear_solve(c->matrix, m + c->column_count, c->rhs, c->solution, &work, &factor, error));
+  c->outcome = (linear_outcome){.condition = r->scale * factor.inverse_norm};
+  c->outcome.singular = !(c->outcome.condition < options->singular_condition);
+  if (c->outcome.singular)
+    RIC_TRY(solve_singular(c, cell, r, options, factor.last, error));
   for (size_t a = 0; a < c->border_count; a++) {
     c->amplitude[a] = 0;
     for (size_t column = 0; column < c->column_count; column++)

@@ -13,14 +13,16 @@
 
 #include <stddef.h>
 
+#include "linear_system.h"
 #include "response.h"
+#include "ricochet/orbit.h"
 #include "unit_cell.h"
 
 /** A mode that is close to resonance or at it. */
 typedef struct border_mode {
   size_t mode;
   unsigned harmonic;
-  double stiffness; /* d_s; exactly 0 at resonance */
+  double stiffness; /* d_s */
   size_t group; /* modes of equal stiffness, numbered from 0: all that are at resonance, or a wave number of its own */
 } border_mode;
 
@@ -37,10 +39,13 @@ typedef struct contact_system {
   size_t column_count;                        /* combinations of border modes that the contacts see */
   double weights[BORDER_MODES][BORDER_MODES]; /* [mode][column] */
   double amplitude[BORDER_MODES];             /* a_s of the solution */
-  double condition;
+  linear_outcome outcome;
 } contact_system;
 
 void contact_system_clear(contact_system *c);
+
+/** Displacement u_ks of a mode at a contact, with the sign of its half period. */
+double contact_shape(const unit_cell *cell, const border_mode *b, const contact *k);
 
 /** Combinations of modes that the contacts see: the rank of [contacts][modes], from its Gram matrix.
  *  @param rotation  [count][count], columns are orthonormal combinations, seen ones first; may be NULL
@@ -49,9 +54,11 @@ ric_status contact_visible(const unit_cell *cell, const border_mode *modes, size
                            size_t *visible, ric_error *error);
 
 /** Assembles and solves for the impulses p [m]. Needs the kernels of the responses.
- *  @param resonance_tol  on |omega T / (2 pi) - l| */
-ric_status contact_solve(contact_system *c, const unit_cell *cell, const response *r, double resonance_tol, double *p,
-                         ric_error *error);
+ *
+ *  Beyond options->singular_condition the solution of least norm is taken if it satisfies the equations to
+ *  residual_tol; c->outcome says which. */
+ric_status contact_solve(contact_system *c, const unit_cell *cell, const response *r, const ric_orbit_options *options,
+                         double *p, ric_error *error);
 
 /** Smallest-to-largest eigenvalues [m] of the contact matrix, without any mode set apart. */
 ric_status contact_eigenvalues(contact_system *c, const unit_cell *cell, const response *r, double *eigenvalues,

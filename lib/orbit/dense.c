@@ -1,24 +1,28 @@
 #include "dense.h"
 
 #include <math.h>
+
 #include <stdlib.h>
 
 #include <gsl/gsl_blas.h>
-#include <gsl/gsl_linalg.h>
+#include <gsl/gsl_eigen.h>
+#include <gsl/gsl_errno.h>
+#include <gsl/gsl_permutation.h>
 
 #include "pattern_roles.h"
 
-/* Matrices of size 2n and vectors, all freed together. */
+/* Matrices and vectors of size 2n, all freed together. */
 typedef struct dense {
   size_t n;
-  gsl_matrix *a, *flow, *system; /* A T/2, its exponential, M + N exp(A T/2) */
-  gsl_vector *rhs, *x, *x_half, *tau, *norm, *work, *residual;
+  gsl_matrix *a, *modes;     /* [n][n]: K, work; eigenvectors of K */
+  gsl_matrix *flow, *system; /* [2n][2n]: exp(A T/2), M + N exp(A T/2) */
+  gsl_vector *rhs, *x, *x_half, *tau, *norm, *work;
   gsl_permutation *permutation;
 } dense;
 
 static void dense_free(dense *d) {
-  gsl_matrix *matrices[] = {d->a, d->flow, d->system};
-  gsl_vector *vectors[] = {d->rhs, d->x, d->x_half, d->tau, d->norm, d->work, d->residual};
+  gsl_matrix *matrices[] = {d->a, d->modes, d->flow, d->system};
+  gsl_vector *vectors[] = {d->rhs, d->x, d->x_half, d->tau, d->norm, d->work};
   for (size_t i = 0; i < sizeof matrices / sizeof *matrices; i++)
     if (matrices[i])
       gsl_matrix_free(matrices[i]);
@@ -32,7 +36,8 @@ static void dense_free(dense *d) {
 static ric_status dense_alloc(dense *d, size_t n, ric_error *error) {
   size_t size = 2 * n;
   *d = (dense){.n = n};
-  d->a = gsl_matrix_calloc(size, size);
+  d->a = gsl_matrix_calloc(n, n);
+  d->modes = gsl_matrix_calloc(n, n);
   d->flow = gsl_matrix_calloc(size, size);
   d->system = gsl_matrix_calloc(size, size);
   d->rhs = gsl_vector_calloc(size);
@@ -40,18 +45,17 @@ static ric_status dense_alloc(dense *d, size_t n, ric_error *error) {
   d->x_half = gsl_vector_calloc(size);
   d->tau = gsl_vector_calloc(size);
   d->norm = gsl_vector_calloc(size);
-  d->residual = gsl_vector_calloc(size);
   d->work = gsl_vector_calloc(3 * size);
   d->permutation = gsl_permutation_calloc(size);
-  if (d->a && d->flow && d->system && d->rhs && d->x && d->x_half && d->tau && d->norm && d->residual && d->work &&
+  if (d->a && d->modes && d->flow && d->system && d->rhs && d->x && d->x_half && d->tau && d->norm && d->work &&
       d->permutation)
     return RIC_OK;
   dense_free(d);
   return ric_fail(error, RIC_ENOMEM, "no memory for matrices of size %zu", size);
 }
 
-/* exp(A T/2) with A = (0, I; -K, 0); columns of -K are accelerations at unit displacements. */
-static int exponentiate(dense *d, const ric_chain *chain, double half_period) {
+/* -K from accelerations at unit displacements, symmetric. */
+static void stiffness(dense *d, const ric_chain *chain) {
   size_t n = d->n;
   double *unit = d->x->data, *acceleration = d->x_half->data;
   for (size_t j = 0; j < n; j++) {
@@ -59,10 +63,31 @@ static int exponentiate(dense *d, const ric_chain *chain, double half_period) {
       unit[i] = i == j;
     ric_chain_acceleration(chain, unit, acceleration);
     for (size_t i = 0; i < n; i++)
-      gsl_matrix_set(d->a, n + i, j, half_period * acceleration[i]);
-    gsl_matrix_set(d->a, j, n + j, half_period);
+      gsl_matrix_set(d->a, i, j, -acceleration[i]);
   }
-  return gsl_linalg_exponential_ss(d->a, d->flow, GSL_PREC_DOUBLE);
+}
+
+/* exp(A t) with A = (0, I; -K, 0), block by block from the numerical eigenvectors of K: cos(wt), sin(wt)/w, -w sin(wt).
+ * A Taylor series with squaring loses a digit for every doubling of the time. */
+static int exponentiate(dense *d, const ric_chain *chain, double t) {
+  size_t n = d->n;
+  stiffness(d, chain);
+  gsl_eigen_symmv_workspace *w = gsl_eigen_symmv_alloc(n);
+  gsl_vector_view values = gsl_vector_subvector(d->rhs, 0, n);
+  int code = w ? gsl_eigen_symmv(d->a, &values.vector, d->modes, w) : GSL_ENOMEM;
+  gsl_eigen_symmv_free(w);
+  for (int block = 0; block < 3 && !code; block++) {
+    for (size_t j = 0; j < n; j++) { /* a := modes times the function of the frequencies */
+      double omega = sqrt(gsl_vector_get(&values.vector, j));
+      double f = block == 0 ? cos(omega * t) : block == 1 ? sin(omega * t) / omega : -omega * sin(omega * t);
+      for (size_t i = 0; i < n; i++)
+        gsl_matrix_set(d->a, i, j, f * gsl_matrix_get(d->modes, i, j));
+    }
+    gsl_matrix_view to = gsl_matrix_submatrix(d->flow, block == 2 ? n : 0, block == 1 ? n : 0, n, n);
+    code = gsl_blas_dgemm(CblasNoTrans, CblasTrans, 1, d->a, d->modes, 0, &to.matrix);
+  }
+  gsl_matrix_view upper = gsl_matrix_submatrix(d->flow, 0, 0, n, n), lower = gsl_matrix_submatrix(d->flow, n, n, n, n);
+  return code ? code : gsl_matrix_memcpy(&lower.matrix, &upper.matrix);
 }
 
 /* Row `row` of the system := row `source` of the flow, or of the identity. */
@@ -89,48 +114,44 @@ static void impose(dense *d, const ric_chain *chain, const ric_pattern *pattern)
   }
 }
 
-/* Numerical rank of the pivoted R at a condition number. */
-static size_t rank_at(const gsl_matrix *r, double condition) {
-  size_t rank = 0;
-  while (rank < r->size1 && fabs(gsl_matrix_get(r, rank, rank)) * condition > fabs(gsl_matrix_get(r, 0, 0)))
-    rank++;
-  return rank;
-}
-
-static int solve(dense *d, double singular_condition, double *condition) {
-  int sign, code = gsl_linalg_QRPT_decomp(d->system, d->tau, d->permutation, &sign, d->norm);
-  double rcond = 0;
+static ric_status solve(dense *d, const ric_chain *chain, const ric_pattern *pattern, const ric_orbit_options *options,
+                        linear_outcome *solution, ric_error *error) {
+  linear_work work = {
+      .tau = d->tau->data, .norm = d->norm->data, .work = d->work->data, .permutation = d->permutation->data};
+  linear_factor factor;
+  double residual;
   size_t size = 2 * d->n;
-  if (!code && gsl_matrix_get(d->system, size - 1, size - 1) != 0)
-    code = gsl_linalg_QRPT_rcond(d->system, &rcond, d->work);
-  if (code)
-    return code;
-  *condition = rcond > 0 ? 1 / rcond : INFINITY;
-  if (*condition < singular_condition)
-    return gsl_linalg_QRPT_solve(d->system, d->tau, d->permutation, d->rhs, d->x);
-  return gsl_linalg_QRPT_lssolve2(d->system, d->tau, d->permutation, d->rhs, rank_at(d->system, singular_condition),
-                                  d->x, d->residual);
+  impose(d, chain, pattern);
+  RIC_TRY(linear_solve(d->system->data, size, d->rhs->data, d->x->data, &work, &factor, error));
+  *solution = (linear_outcome){.condition = factor.norm * factor.inverse_norm};
+  solution->singular = !(solution->condition < options->singular_condition);
+  if (!solution->singular)
+    return RIC_OK;
+  impose(d, chain, pattern); /* the factorisation has overwritten it */
+  RIC_TRY(linear_least_norm(d->system->data, size, d->rhs->data, d->x->data, factor.norm / options->singular_condition,
+                            factor.last, &residual, error));
+  solution->solvable = residual <= options->residual_tol;
+  return RIC_OK;
 }
 
-ric_status dense_solve(const ric_chain *chain, const ric_pattern *pattern, double period, double singular_condition,
-                       const boundary_state *state, double *condition, ric_error *error) {
+ric_status dense_solve(const ric_chain *chain, const ric_pattern *pattern, double period,
+                       const ric_orbit_options *options, const boundary_state *state, linear_outcome *solution,
+                       ric_error *error) {
   dense d;
   size_t n = chain->particles;
   RIC_TRY(dense_alloc(&d, n, error));
   int code = exponentiate(&d, chain, period / 2);
-  if (!code) {
-    impose(&d, chain, pattern);
-    code = solve(&d, singular_condition, condition);
-  }
-  if (!code)
-    code = gsl_blas_dgemv(CblasNoTrans, 1, d.flow, d.x, 0, d.x_half);
-  for (size_t i = 0; i < n && !code; i++) {
+  ric_status status =
+      code ? ric_fail(error, RIC_ENUMERIC, "matrix exponential of size %zu: %s", 2 * n, gsl_strerror(code))
+           : solve(&d, chain, pattern, options, solution, error);
+  if (status == RIC_OK)
+    gsl_blas_dgemv(CblasNoTrans, 1, d.flow, d.x, 0, d.x_half);
+  for (size_t i = 0; i < n && status == RIC_OK; i++) {
     state->q[i] = gsl_vector_get(d.x, i);
     state->v[i] = gsl_vector_get(d.x, n + i);
     state->q_half[i] = gsl_vector_get(d.x_half, i);
     state->v_half[i] = gsl_vector_get(d.x_half, n + i);
   }
   dense_free(&d);
-  return code ? ric_fail(error, RIC_ENUMERIC, "boundary-value problem of size %zu: %s", 2 * n, gsl_strerror(code))
-              : RIC_OK;
+  return status;
 }

@@ -3,14 +3,17 @@
 #define RICOCHET_DENSE_H
 
 #include "boundary_state.h"
-#include "ricochet/chain.h"
-#include "ricochet/pattern.h"
+#include "linear_system.h"
+#include "ricochet/orbit.h"
 
 /** State of the orbit of a pattern on the whole chain, O(n^3), allocating what it needs.
- *  @param condition  set to the estimated condition number of the matrix of (11), infinite when it is singular
- *  @param singular_condition  beyond it the equations are solved in the sense of least norm, on the numerical rank
+ *
+ *  Beyond options->singular_condition the solution of least norm is taken if it satisfies the equations to
+ * residual_tol.
+ *  @param solution  set; the condition number is that of the matrix of (11)
  *  Source: (M + N exp(A T/2)) x(0) = B, [JAP] (11), with the boundary conditions (8). */
-ric_status dense_solve(const ric_chain *chain, const ric_pattern *pattern, double period, double singular_condition,
-                       const boundary_state *state, double *condition, ric_error *error);
+ric_status dense_solve(const ric_chain *chain, const ric_pattern *pattern, double period,
+                       const ric_orbit_options *options, const boundary_state *state, linear_outcome *solution,
+                       ric_error *error);
 
 #endif

@@ -75,15 +75,15 @@ static void write_state(const impulse *w, const unit_cell *cell, const boundary_
       state->v_half[cell->contacts[k].site] = -w->p[k] / 2;
 }
 
-ric_status impulse_solve(impulse *w, const unit_cell *cell, double period, double resonance_tol,
-                         double singular_condition, const boundary_state *state, double *condition, ric_error *error) {
+ric_status impulse_solve(impulse *w, const unit_cell *cell, double period, const ric_orbit_options *options,
+                         const boundary_state *state, linear_outcome *solution, ric_error *error) {
   RIC_TRY(prepare(w, cell, error));
   response *r = &w->response;
   response_compute(r, &cell->chain, period, 1);
   response_kernels(r, has_both_roles(cell));
-  RIC_TRY(contact_solve(&w->contacts, cell, r, resonance_tol, w->p, error));
-  *condition = w->contacts.condition;
-  if (!(*condition < singular_condition))
+  RIC_TRY(contact_solve(&w->contacts, cell, r, options, w->p, error));
+  *solution = w->contacts.outcome;
+  if (solution->singular && !solution->solvable)
     return RIC_OK;
   excite(w, cell, RIC_ROLE_START, r->modal_start);
   excite(w, cell, RIC_ROLE_HALF, r->modal_half);

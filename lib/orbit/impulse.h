@@ -4,6 +4,7 @@
 
 #include "boundary_state.h"
 #include "contact.h"
+#include "linear_system.h"
 
 /** Workspace. */
 typedef struct impulse {
@@ -16,9 +17,9 @@ typedef struct impulse {
 void impulse_clear(impulse *w);
 
 /** State of the orbit of a cell; O(n log n + m^3).
- *  @param condition  set to the condition number; beyond `singular_condition` the state is left alone */
-ric_status impulse_solve(impulse *w, const unit_cell *cell, double period, double resonance_tol,
-                         double singular_condition, const boundary_state *state, double *condition, ric_error *error);
+ *  @param solution  set; when it is singular and not solvable the state is left alone */
+ric_status impulse_solve(impulse *w, const unit_cell *cell, double period, const ric_orbit_options *options,
+                         const boundary_state *state, linear_outcome *solution, ric_error *error);
 
 /** Smallest-to-largest eigenvalues of the cell's contact matrix, [impacts]. */
 ric_status impulse_eigenvalues(impulse *w, const unit_cell *cell, double period, double *eigenvalues, ric_error *error);

@@ -58,6 +58,38 @@ ric_status resonant_free(const unit_cell *whole, const border_mode *modes, size_
   return RIC_OK;
 }
 
+/* Combination v of the modes at a contact. */
+static double combined(const unit_cell *whole, const border_mode *modes, size_t count, const double *rotation, size_t v,
+                       const contact *k) {
+  double u = 0;
+  for (size_t a = 0; a < count; a++)
+    u += rotation[a * count + v] * contact_shape(whole, &modes[a], k);
+  return u;
+}
+
+/* The visible combinations are orthogonal at the contacts: the floors less their projections must vanish. */
+ric_status resonant_carries(const unit_cell *whole, const border_mode *modes, size_t count, bool *carries,
+                            ric_error *error) {
+  double rotation[BORDER_MODES * BORDER_MODES], all = 0, reached = 0;
+  size_t visible;
+  RIC_TRY(contact_visible(whole, modes, count, rotation, &visible, error));
+  for (size_t k = 0; k < whole->impacts; k++) {
+    double b = ric_chain_floor(&whole->chain, whole->contacts[k].site);
+    all += b * b;
+  }
+  for (size_t v = 0; v < visible; v++) {
+    double along = 0, square = 0;
+    for (size_t k = 0; k < whole->impacts; k++) {
+      double u = combined(whole, modes, count, rotation, v, &whole->contacts[k]);
+      along += u * ric_chain_floor(&whole->chain, whole->contacts[k].site);
+      square += u * u;
+    }
+    reached += along * along / square;
+  }
+  *carries = all - reached <= 1e-12 * all; /* squares: a millionth of the floors, far above rounding */
+  return RIC_OK;
+}
+
 size_t resonant_dominant(const ric_chain *chain, const border_mode *modes, size_t count, const double *q) {
   size_t dominant = 0;
   double largest = -1;

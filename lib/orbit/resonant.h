@@ -13,6 +13,11 @@ size_t resonant_modes(const ric_chain *chain, double period, double tolerance, b
 ric_status resonant_free(const unit_cell *whole, const border_mode *modes, size_t count, bool *free_amplitude,
                          size_t *hidden, ric_error *error);
 
+/** Whether the modes alone satisfy the contact conditions, so that the orbit tends to a linear mode without impulses.
+ */
+ric_status resonant_carries(const unit_cell *whole, const border_mode *modes, size_t count, bool *carries,
+                            ric_error *error);
+
 /** The mode with the largest amplitude in positions q [n]. */
 size_t resonant_dominant(const ric_chain *chain, const border_mode *modes, size_t count, const double *q);
 

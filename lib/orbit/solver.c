@@ -7,7 +7,6 @@
 #include <gsl/gsl_errno.h>
 
 #include "dense.h"
-#include "resonant.h"
 #include "verdict.h"
 
 static ric_status check_options(const ric_orbit_options *o, ric_error *error) {
@@ -53,8 +52,8 @@ void ric_orbit_solver_destroy(ric_orbit_solver **solver) {
 
 double ric_orbit_bytes(const ric_chain *chain, const ric_pattern *pattern, ric_orbit_method method) {
   double n = (double)chain->particles, m = (double)ric_pattern_impacts(pattern), word = sizeof(double);
-  if (method == RIC_METHOD_DENSE) /* three matrices of size 2n, and the exponential's own four */
-    return word * (7 * 4 * n * n + 40 * n + m);
+  if (method == RIC_METHOD_DENSE) /* two matrices of size 2n, two of size n */
+    return word * (10 * n * n + 40 * n + m);
   double c = (double)unit_cell_sites(chain, pattern), contacts = fmax(1, m * c / n) + BORDER_MODES;
   return word * (17 * c + 4 * n + m + contacts * (contacts + 9)) + n;
 }
@@ -113,29 +112,21 @@ static void unfold(const unit_cell *cell, const ric_pattern *pattern, const boun
   }
 }
 
-/* The dense matrix is singular in case (b), a free amplitude, and in case (c), no orbit; its own least-norm solution
- * satisfies the equations in the first only. */
-static int is_singular(const ric_orbit_solver *s, const ric_chain *chain, double period, double condition) {
-  if (condition < s->options.singular_condition)
-    return 0;
-  border_mode modes[BORDER_MODES];
-  return s->options.method == RIC_METHOD_IMPULSE || resonant_modes(chain, period, s->options.resonance_tol, modes) == 0;
-}
-
 static ric_status solve(ric_orbit_solver *s, const ric_chain *chain, const ric_pattern *pattern, double period,
                         ric_orbit *orbit, ric_error *error) {
   const ric_orbit_options *o = &s->options;
   boundary_state state;
+  linear_outcome solution;
   bool dense = o->method == RIC_METHOD_DENSE;
   RIC_TRY(dense ? unit_cell_whole(&s->cell, chain, pattern, error) : unit_cell_find(&s->cell, chain, pattern, error));
   RIC_TRY(place_state(s, orbit, &state, error));
   RIC_TRY(motion_prepare(&s->motion, s->cell.chain.particles, error));
   if (ric_poll_stops(o->poll))
     return ric_fail(error, RIC_ESTOPPED, "stopped before the contact equations");
-  RIC_TRY(dense ? dense_solve(chain, pattern, period, o->singular_condition, &state, &orbit->condition, error)
-                : impulse_solve(&s->impulse, &s->cell, period, o->resonance_tol, o->singular_condition, &state,
-                                &orbit->condition, error));
-  if (is_singular(s, chain, period, orbit->condition)) {
+  RIC_TRY(dense ? dense_solve(chain, pattern, period, o, &state, &solution, error)
+                : impulse_solve(&s->impulse, &s->cell, period, o, &state, &solution, error));
+  orbit->condition = solution.condition;
+  if (solution.singular && !solution.solvable) {
     verdict_without_state(orbit, RIC_SINGULAR);
     snprintf(orbit->reason, sizeof orbit->reason, "contact matrix is singular: condition %.3g, limit %.3g",
              orbit->condition, o->singular_condition);
@@ -143,7 +134,7 @@ static ric_status solve(ric_orbit_solver *s, const ric_chain *chain, const ric_p
   }
   unfold(&s->cell, pattern, &state, orbit);
   orbit->energy = ric_chain_energy(chain, orbit->q, orbit->v);
-  return verdict_find(&s->motion, &s->cell, chain, pattern, &state, o, orbit, error);
+  return verdict_find(&s->motion, &s->cell, chain, pattern, &state, solution.singular, o, orbit, error);
 }
 
 ric_status ric_orbit_solve(ric_orbit_solver *solver, const ric_chain *chain, const ric_pattern *pattern, double period,

@@ -52,7 +52,7 @@ ric_status ric_orbit_states(ric_orbit_solver *solver, const ric_chain *chain, co
   RIC_TRY(ric_chain_check(chain, error));
   if (orbit->particles != chain->particles)
     return ric_fail(error, RIC_EINVAL, "orbit of %zu particles, expected %zu", orbit->particles, chain->particles);
-  if (!(orbit->period > 0) || !isfinite(orbit->energy))
+  if (orbit->outcome == RIC_FAILED || !(orbit->period > 0) || !isfinite(orbit->energy))
     return ric_fail(error, RIC_EINVAL, "orbit without a state: %s", ric_outcome_name(orbit->outcome));
   for (size_t a = 0; a < count; a++)
     if (!isfinite(times[a]))

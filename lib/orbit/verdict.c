@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "resonant.h"
 
@@ -16,10 +17,14 @@ typedef struct facts {
   gaps gaps;
 } facts;
 
-static double largest_displacement(const boundary_state *state, size_t sites) {
-  double largest = 0;
-  for (size_t i = 0; i < sites; i++)
-    largest = fmax(largest, fmax(fabs(state->q[i]), fabs(state->q_half[i])));
+/* Velocities over the largest frequency stand for what is reached between the impacts. */
+static double largest_displacement(const boundary_state *state, const ric_chain *chain) {
+  double largest = 0, slowest = 1 / ric_chain_frequency_max(chain);
+  for (size_t i = 0; i < chain->particles; i++) {
+    double q = fmax(fabs(state->q[i]), fabs(state->q_half[i]));
+    double v = fmax(fabs(state->v[i]), fabs(state->v_half[i]));
+    largest = fmax(largest, fmax(q, v * slowest));
+  }
   return largest;
 }
 
@@ -42,14 +47,30 @@ static size_t weakest_impact(const ric_orbit *orbit) {
   return weakest;
 }
 
-static double largest_impulse(const ric_orbit *orbit) {
-  double largest = 0;
-  for (size_t r = 0; r < orbit->impacts; r++)
-    largest = fmax(largest, fabs(orbit->impulse[r]));
-  return largest;
+/* What the resonant modes do: they carry the orbit without impulses, or an amplitude is free, or neither. */
+static ric_status judge_modes(const unit_cell *whole, const border_mode *modes, size_t count, ric_orbit *orbit,
+                              size_t *which, bool *decided, ric_error *error) {
+  RIC_TRY(resonant_carries(whole, modes, count, decided, error));
+  if (*decided) {
+    *which = resonant_dominant(&whole->chain, modes, count, orbit->q);
+    orbit->outcome = RIC_GRAZING;
+    snprintf(orbit->reason, sizeof orbit->reason,
+             "mode %zu is at resonance (%u oscillations per period): the impulses vanish, the orbit is a linear mode",
+             modes[*which].mode, modes[*which].harmonic);
+    return RIC_OK;
+  }
+  RIC_TRY(resonant_free(whole, modes, count, decided, which, error));
+  if (*decided) {
+    orbit->outcome = RIC_RESONANT;
+    snprintf(
+        orbit->reason, sizeof orbit->reason,
+        "mode %zu is at resonance (%u oscillations per period) and vanishes at the contacts: its amplitude is free",
+        modes[*which].mode, modes[*which].harmonic);
+  }
+  return RIC_OK;
 }
 
-/* Resonant modes of the whole chain: grazing when the impulses vanish, resonant when some amplitude is free. */
+/* Resonances are those of the whole chain: its cell does not know all modes. */
 static ric_status judge_resonances(const facts *f, const ric_chain *chain, ric_orbit *orbit, bool *decided,
                                    ric_error *error) {
   border_mode modes[BORDER_MODES];
@@ -57,33 +78,16 @@ static ric_status judge_resonances(const facts *f, const ric_chain *chain, ric_o
   *decided = false;
   if (count == 0)
     return RIC_OK;
-  if (largest_impulse(orbit) <= f->zero) {
-    which = resonant_dominant(chain, modes, count, orbit->q);
-    orbit->outcome = RIC_GRAZING;
-    snprintf(orbit->reason, sizeof orbit->reason,
-             "mode %zu is at resonance (%u oscillations per period): the impulses vanish, the orbit is a linear mode",
-             modes[which].mode, modes[which].harmonic);
-    *decided = true;
-  } else {
-    unit_cell whole = {0};
-    ric_status status = unit_cell_whole(&whole, chain, f->pattern, error);
-    if (status == RIC_OK)
-      status = resonant_free(&whole, modes, count, decided, &which, error);
-    unit_cell_clear(&whole);
-    RIC_TRY(status);
-    if (*decided) {
-      orbit->outcome = RIC_RESONANT;
-      snprintf(
-          orbit->reason, sizeof orbit->reason,
-          "mode %zu is at resonance (%u oscillations per period) and vanishes at the contacts: its amplitude is free",
-          modes[which].mode, modes[which].harmonic);
-    }
-  }
-  if (*decided) {
+  unit_cell whole = {0};
+  ric_status status = unit_cell_whole(&whole, chain, f->pattern, error);
+  if (status == RIC_OK)
+    status = judge_modes(&whole, modes, count, orbit, &which, decided, error);
+  unit_cell_clear(&whole);
+  if (status == RIC_OK && *decided) {
     orbit->mode = (long long)modes[which].mode;
     orbit->harmonic = modes[which].harmonic;
   }
-  return RIC_OK;
+  return status;
 }
 
 /* Which condition fails first in [0, T/2]: an impulse at 0, a gap, an impulse at T/2. */
@@ -126,11 +130,21 @@ static void explain_grazing(const facts *f, ric_orbit *orbit) {
            ric_pattern_impact(f->pattern, weakest), orbit->impulse[weakest]);
 }
 
+/* A linear mode, or one orbit of many, need not be admissible: says so. */
+static void mention_violation(const facts *f, ric_orbit *orbit) {
+  size_t used = strlen(orbit->reason);
+  const located *worst = f->gaps.free.value <= f->gaps.impact.value ? &f->gaps.free : &f->gaps.impact;
+  double weakest = orbit->impulse[weakest_impact(orbit)];
+  if (worst->value < -f->zero)
+    snprintf(orbit->reason + used, sizeof orbit->reason - used, "; inadmissible, gap %.3g of particle %zu",
+             worst->value, unit_cell_particle(f->cell, worst->site));
+  else if (weakest < -f->zero)
+    snprintf(orbit->reason + used, sizeof orbit->reason - used, "; inadmissible, impulse %.3g", weakest);
+}
+
 /* Says why the numbers are large where the contact matrix is nearly singular. */
 static void mention_condition(ric_orbit *orbit) {
-  size_t used = 0;
-  while (orbit->reason[used])
-    used++;
+  size_t used = strlen(orbit->reason);
   if (orbit->condition > 1e3 && orbit->outcome == RIC_INADMISSIBLE)
     snprintf(orbit->reason + used, sizeof orbit->reason - used, "; near a singular contact matrix, condition %.2g",
              orbit->condition);
@@ -163,11 +177,11 @@ static void copy_clearance(const facts *f, ric_orbit *orbit) {
 }
 
 ric_status verdict_find(motion *m, const unit_cell *cell, const ric_chain *chain, const ric_pattern *pattern,
-                        const boundary_state *state, const ric_orbit_options *options, ric_orbit *orbit,
-                        ric_error *error) {
+                        const boundary_state *state, bool one_of_many, const ric_orbit_options *options,
+                        ric_orbit *orbit, ric_error *error) {
   facts f = {.cell = cell, .pattern = pattern, .options = options};
   double mismatch;
-  f.scale = largest_displacement(state, cell->chain.particles);
+  f.scale = largest_displacement(state, &cell->chain);
   f.zero = options->grazing_tol * f.scale;
   RIC_TRY(gaps_find(m, cell, orbit->period, state, options->clearance_tol * f.scale, f.zero, &f.gaps, &mismatch,
                     options->poll, error));
@@ -181,7 +195,17 @@ ric_status verdict_find(motion *m, const unit_cell *cell, const ric_chain *chain
   }
   bool decided;
   RIC_TRY(judge_resonances(&f, chain, orbit, &decided, error));
-  return decided ? RIC_OK : judge_admissibility(m, &f, state, orbit, error);
+  if (!decided && one_of_many) {
+    decided = true;
+    orbit->outcome = RIC_RESONANT;
+    snprintf(orbit->reason, sizeof orbit->reason,
+             "contact matrix is singular (condition %.3g) and its equations solvable: impulses may be added freely",
+             orbit->condition);
+  }
+  if (!decided)
+    return judge_admissibility(m, &f, state, orbit, error);
+  mention_violation(&f, orbit);
+  return RIC_OK;
 }
 
 void verdict_without_state(ric_orbit *orbit, ric_outcome outcome) {

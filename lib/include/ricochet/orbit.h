@@ -18,8 +18,9 @@
  *   inadmissible a solution of the equations that violates one of the two; the reason says which first, where and when
  *   grazing      an impulse or a gap vanishes within grazing_tol; in particular a mode that the pattern excites is at
  *                resonance: the impulses are zero and the orbit is a linear mode that touches the floor
- *   resonant     a mode at resonance vanishes at every contact: the orbit exists and is not unique, the amplitude of
- *                that mode is free (0 in the orbit given)
+ *   resonant     the orbit exists and is not unique: a mode at resonance vanishes at every contact and its amplitude is
+ *                free (0 in the orbit given), or the contact matrix is singular though its equations are solvable
+ *                (the orbit given has the smallest impulses)
  *   singular     the contact matrix is singular: no orbit, amplitudes blow up nearby; states are NaN
  *   not_converged, failed  no result, with the reason */
 #ifndef RICOCHET_ORBIT_H
@@ -52,9 +53,10 @@ RIC_API const char *ric_outcome_name(ric_outcome outcome);
 
 typedef enum ric_orbit_method { RIC_METHOD_IMPULSE, RIC_METHOD_DENSE } ric_orbit_method;
 
-enum { RIC_REASON_BYTES = 192, RIC_DENSE_PARTICLES = 400 /* largest chain of the dense method */ };
+enum { RIC_REASON_BYTES = 224, RIC_DENSE_PARTICLES = 400 /* largest chain of the dense method */ };
 
-/** Tolerances, all relative to the largest displacement of the orbit unless said otherwise. */
+/** Tolerances, all relative to the largest displacement of the orbit (taken at t = 0 and T/2, with velocities there
+ * over the largest frequency for what lies between) unless said otherwise. */
 typedef struct ric_orbit_options {
   ric_orbit_method method;
   double clearance_tol;      /* 1e-12: the clearance lies within it of the true minimum; a hundred times the rounding */
@@ -91,7 +93,8 @@ typedef struct ric_orbit {
 RIC_API ric_status ric_orbit_init(ric_orbit *orbit, size_t particles, size_t impacts, ric_error *error);
 RIC_API void ric_orbit_clear(ric_orbit *orbit);
 
-/** Makes an orbit `failed` with this reason: NaN in every array, no clearance. For problems that never reach a solver. */
+/** Makes an orbit `failed` with this reason: NaN in every array, no clearance. For problems that never reach a solver.
+ */
 RIC_API void ric_orbit_fail(ric_orbit *orbit, const char *reason);
 
 /** Workspace of the solvers and of everything that follows an orbit in time. Grows to what a problem needs; solving

@@ -1,0 +1,86 @@
+"""Reads the #include lines and the words of the library and fails where they point the wrong way.
+
+Rooms include their own headers, those of rooms to their left, and the base below all; the numerics know no MPI, no
+HDF5, no YAML, no files and no output.
+"""
+import pathlib
+import re
+import sys
+
+ROOMS = ["model", "flow", "impact", "orbit", "branch", "grazing", "attractor"]
+PUBLIC = {  # public headers by room
+    "model": {"chain", "resonance"},
+    "flow": {"polynomial", "segment", "lattice_flow"},
+    "orbit": {"pattern", "orbit"},
+}
+BASE = {"status", "export", "version"}
+UMBRELLA = "ricochet.h"
+FORBIDDEN_PAIRS = {("branch", "orbit")}  # branches know their problem through its residual only
+FORBIDDEN_HEADERS = re.compile(r"^(mpi|hdf5|yaml|omp|pthread|time|sys/time)\.h$|^H5")
+FORBIDDEN_WORDS = re.compile(
+    r"\b(FILE\b|stdin\b|stdout\b|stderr\b|"
+    r"(?:fopen|v?f?printf|f?puts|putchar|putc|perror|exit|abort|getenv|signal)(?=\s*\())")
+INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.M)
+COMMENT_OR_STRING = re.compile(r'/\*.*?\*/|//[^\n]*|"(?:\\.|[^"\\\n])*"', re.S)
+
+
+def room_of_public(stem):
+    """Room of a public header; "base" below all of them; None if it is in no list."""
+    if stem in BASE:
+        return "base"
+    return next((room for room, stems in PUBLIC.items() if stem in stems), None)
+
+
+def room_of_file(path, lib):
+    parts = path.relative_to(lib).parts
+    if parts[0] == "include":
+        return room_of_public(path.name.split(".")[0])
+    return parts[0] if len(parts) > 1 else "base"
+
+
+def room_of_include(name, including):
+    """Room of an included header of the library, None for headers of others."""
+    folder, _, base = name.rpartition("/")
+    stem = base.split(".")[0]
+    if folder == "ricochet":
+        return room_of_public(stem)
+    if folder in ROOMS:
+        return folder
+    if (including.parent / name).exists():
+        return room_of_public(stem) if "include" in including.parts else including.parent.name
+    return None
+
+
+def level(room):
+    return -1 if room == "base" else ROOMS.index(room)
+
+
+def complaints_of(path, lib):
+    text = path.read_text()
+    here = room_of_file(path, lib)
+    if here != "base" and here not in ROOMS:
+        yield f"{here}: no such room"
+        return
+    for quote, name in INCLUDE.findall(text):
+        if FORBIDDEN_HEADERS.search(name):
+            yield f"includes {name}"
+        there = room_of_include(name, path)
+        if there is None:
+            if quote == '"':
+                yield f'"{name}" belongs to no room'
+        elif level(there) > level(here) or (here, there) in FORBIDDEN_PAIRS:
+            yield f"room {here} includes {name} of room {there}"
+    for word in sorted(set(FORBIDDEN_WORDS.findall(COMMENT_OR_STRING.sub(" ", text)))):
+        yield f"uses {word}"
+
+
+def main():
+    lib = pathlib.Path(sys.argv[1])
+    files = [p for p in sorted(lib.rglob("*")) if p.name.endswith((".c", ".h", ".h.in")) and p.name != UMBRELLA]
+    found = [f"{p.relative_to(lib)}: {c}" for p in files for c in complaints_of(p, lib)]
+    print("\n".join(found) or f"{len(files)} files, includes point one way")
+    return 1 if found or not files else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,182 @@
+/* Solving again allocates nothing: every allocation of this process passes through the functions below. They stand in
+ * the executable, so that the shared libraries are bound to them, and hand on to the ones of the C library. Buffers
+ * that FFTW takes inside some of its transforms are its own affair: allocations called from it are not counted. */
+#define _GNU_SOURCE /* dladdr */
+
+#include "support.h"
+
+#include <dlfcn.h>
+#include <errno.h>
+#include <stdbool.h>
+
+#include "solved.h"
+
+#if defined(__SANITIZE_ADDRESS__) || !defined(__GLIBC__)
+
+static void another_allocator_stands_in_the_way(void **state) {
+  (void)state;
+  skip();
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(another_allocator_stands_in_the_way)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
+
+#else
+
+#define VISIBLE __attribute__((visibility("default"))) /* to the shared libraries */
+
+static size_t allocations;
+static size_t live, most_live; /* bytes */
+
+void *__libc_malloc(size_t size);
+void *__libc_calloc(size_t count, size_t size);
+void *__libc_realloc(void *block, size_t size);
+void *__libc_memalign(size_t alignment, size_t size);
+void __libc_free(void *block);
+void *memalign(size_t alignment, size_t size);
+size_t malloc_usable_size(void *block);
+
+static bool watching;
+
+/* Whether an address lies in FFTW. */
+static bool in_fftw(void *address) {
+  Dl_info where;
+  return dladdr(address, &where) != 0 && where.dli_fname != NULL && strstr(where.dli_fname, "libfftw3") != NULL;
+}
+
+static void *counted(void *block, void *caller) {
+  if (!watching || !in_fftw(caller))
+    allocations++;
+  live += malloc_usable_size(block);
+  most_live = live > most_live ? live : most_live;
+  return block;
+}
+
+VISIBLE void *malloc(size_t size) {
+  return counted(__libc_malloc(size), __builtin_return_address(0));
+}
+
+VISIBLE void *calloc(size_t count, size_t size) {
+  return counted(__libc_calloc(count, size), __builtin_return_address(0));
+}
+
+VISIBLE void *realloc(void *block, size_t size) {
+  live -= malloc_usable_size(block);
+  return counted(__libc_realloc(block, size), __builtin_return_address(0));
+}
+
+VISIBLE void *memalign(size_t alignment, size_t size) {
+  return counted(__libc_memalign(alignment, size), __builtin_return_address(0));
+}
+
+VISIBLE void *aligned_alloc(size_t alignment, size_t size) {
+  return counted(__libc_memalign(alignment, size), __builtin_return_address(0));
+}
+
+VISIBLE int posix_memalign(void **block, size_t alignment, size_t size) {
+  *block = counted(__libc_memalign(alignment, size), __builtin_return_address(0));
+  return *block ? 0 : ENOMEM;
+}
+
+VISIBLE void free(void *block) {
+  live -= malloc_usable_size(block);
+  __libc_free(block);
+}
+
+/* Solves with changing coupling and period; returns the allocations of all but the first. */
+static size_t allocations_of_repeats(scenario s) {
+  enum { REPEATS = 100 };
+  solved x = solved_by(RIC_METHOD_IMPULSE, s);
+  size_t before = allocations;
+  watching = true;
+  for (int k = 0; k < REPEATS; k++) {
+    s.chain.gamma = 0.02 + 0.011 * k;
+    s.period = 3.5 + 0.023 * k;
+    assert_int_equal(ric_orbit_solve(x.solver, &s.chain, s.pattern, s.period, &x.orbit, NULL), RIC_OK);
+  }
+  watching = false;
+  size_t during = allocations - before;
+  solved_clear(&x);
+  return during;
+}
+
+static void the_counter_counts(void **state) {
+  (void)state;
+  size_t before = allocations;
+  solved x = solved_by(RIC_METHOD_IMPULSE, scenario_middle(9, RIC_ENDS_FREE, 0.1, 5));
+  assert_true(allocations > before + 5);
+  solved_clear(&x);
+}
+
+static void solving_again_on_a_ring_allocates_nothing(void **state) {
+  (void)state;
+  assert_int_equal(allocations_of_repeats(scenario_middle(30, RIC_ENDS_PERIODIC, 0.1, 5)), 0);
+  assert_int_equal(allocations_of_repeats(scenario_word("s..h...s.h.", 1, RIC_ENDS_PERIODIC, 0.1, 5)), 0);
+}
+
+static void solving_again_on_a_fixed_chain_allocates_nothing(void **state) {
+  (void)state;
+  assert_int_equal(allocations_of_repeats(scenario_middle(30, RIC_ENDS_FIXED, 0.1, 5)), 0);
+  assert_int_equal(allocations_of_repeats(scenario_word("s..h...s.h.", 1, RIC_ENDS_FIXED, 0.1, 5)), 0);
+}
+
+static void solving_again_on_a_free_chain_allocates_nothing(void **state) {
+  (void)state;
+  assert_int_equal(allocations_of_repeats(scenario_middle(30, RIC_ENDS_FREE, 0.1, 5)), 0);
+  assert_int_equal(allocations_of_repeats(scenario_word("s..h...s.h.", 1, RIC_ENDS_FREE, 0.1, 5)), 0);
+}
+
+static void solving_again_with_an_awkward_number_of_particles_allocates_nothing(void **state) {
+  (void)state;
+  for (int ends = RIC_ENDS_PERIODIC; ends <= RIC_ENDS_FREE; ends++) {
+    assert_int_equal(allocations_of_repeats(scenario_middle(101, (ric_ends)ends, 0.1, 5)), 0);
+    assert_int_equal(allocations_of_repeats(scenario_middle(1021, (ric_ends)ends, 0.1, 5)), 0);
+  }
+}
+
+static void solving_again_on_a_unit_cell_allocates_nothing(void **state) {
+  (void)state;
+  assert_int_equal(allocations_of_repeats(scenario_word("s.h", 10, RIC_ENDS_PERIODIC, 0.1, 5)), 0);
+  assert_int_equal(allocations_of_repeats(scenario_word(".s.", 10, RIC_ENDS_FREE, 0.1, 5)), 0);
+}
+
+/* The estimate leaves out the block of the flow, the descriptions of the plans, and buffers that FFTW takes for awkward
+ * numbers of particles, up to two numbers per site. It serves to refuse what cannot fit. */
+static void check_estimate(scenario s, ric_orbit_method method) {
+  size_t before = most_live = live;
+  solved x = solved_by(method, s);
+  double taken = (double)(most_live - before), estimate = ric_orbit_bytes(&s.chain, s.pattern, method);
+  print_message("n = %zu, ends %d: %.0f bytes taken, %.0f estimated\n", s.chain.particles, (int)s.chain.ends, taken,
+                estimate);
+  assert_true(taken <= 1.5 * estimate + 200e3);
+  assert_true(taken >= 0.5 * estimate);
+  solved_clear(&x);
+}
+
+static void memory_is_what_was_estimated(void **state) {
+  (void)state;
+  for (int ends = RIC_ENDS_PERIODIC; ends <= RIC_ENDS_FREE; ends++) {
+    check_estimate(scenario_middle(50000, (ric_ends)ends, 0.1, 5), RIC_METHOD_IMPULSE);
+    check_estimate(scenario_middle(50021, (ric_ends)ends, 0.1, 5), RIC_METHOD_IMPULSE);
+    check_estimate(scenario_word("s..h.s...hh..s", 25, (ric_ends)ends, 0.1, 5), RIC_METHOD_IMPULSE);
+    check_estimate(scenario_middle(150, (ric_ends)ends, 0.1, 5), RIC_METHOD_DENSE);
+  }
+  check_estimate(scenario_word("s.h", 50000, RIC_ENDS_PERIODIC, 0.1, 5), RIC_METHOD_IMPULSE);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(the_counter_counts),
+      cmocka_unit_test(solving_again_on_a_ring_allocates_nothing),
+      cmocka_unit_test(solving_again_on_a_fixed_chain_allocates_nothing),
+      cmocka_unit_test(solving_again_on_a_free_chain_allocates_nothing),
+      cmocka_unit_test(solving_again_with_an_awkward_number_of_particles_allocates_nothing),
+      cmocka_unit_test(solving_again_on_a_unit_cell_allocates_nothing),
+      cmocka_unit_test(memory_is_what_was_estimated),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
+
+#endif
