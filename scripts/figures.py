@@ -96,6 +96,16 @@ class Study:
         return found[1] + (r"\,\pi" if found[2] else "")
 
 
+SPECIAL_LABELS = ("resonance", "idle resonance", "singular", "free impulses")
+
+
+def special_label(kind, outcome):
+    """What a special point does to the orbit, one of SPECIAL_LABELS."""
+    if kind == "resonance":
+        return "resonance" if outcome in ("grazing", "resonant") else "idle resonance"
+    return "free impulses" if outcome == "resonant" else "singular"
+
+
 class Result:
     """What figures use of a result: swept parameters, outcomes, columns of /orbits, the table /special."""
 
@@ -125,12 +135,20 @@ class Result:
 
     @staticmethod
     def _read_special(file):
-        """Special points by kind: {kind: sorted different parameters}; empty without the group."""
+        """Special points by what they do to the orbit: {label: sorted different parameters}.
+
+        A resonance matters where the outcome exactly there is grazing or resonant; a zero of the determinant is
+        singular unless its equations are solvable. Empty without the group.
+        """
         if "special/kind" not in file or "special/parameter" not in file:
             return {}
         kinds, at = names_of(file["special/kind"]), file["special/parameter"][()]
+        outcomes = names_of(file["special/outcome"])
+        labels = np.array([special_label(kind, outcome) for kind, outcome in zip(kinds, outcomes)], dtype=object)
         # Modes p and n - p of a ring resonate together: one line.
-        return {kind: np.unique(np.round(at[kinds == kind], 13)) for kind in dict.fromkeys(kinds)}
+        return {
+            label: np.unique(np.round(at[labels == label], 13)) for label in SPECIAL_LABELS if (labels == label).any()
+        }
 
     def need(self, name):
         if name not in self.columns:

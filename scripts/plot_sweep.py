@@ -16,8 +16,10 @@ from matplotlib.patches import Patch
 import figures
 
 SPECIAL_LOOK = {
-    "resonance": ("resonance of a mode", (0, (1, 1.6)), figures.GREEN),
-    "singular": ("singular point: contact determinant zero", (0, (5, 2)), figures.RED),
+    "resonance": ("resonance: a mode carries the orbit, or is free", (0, (1, 1.6)), figures.GREEN),
+    "idle resonance": ("resonance of a mode that the impacts hold", None, figures.FAINT),
+    "singular": ("singular point: amplitudes blow up", (0, (5, 2)), figures.RED),
+    "free impulses": ("singular but solvable: not unique", None, figures.PINK),
 }
 RARE = ("grazing", "resonant", "singular", "not_converged", "failed")
 
@@ -174,18 +176,16 @@ def draw_strip(axes, at, outcome, edges):
 
 
 def draw_special(panels, rug, result, edges):
-    """Special points: ticks in the rug, faint lines through the panels."""
+    """Special points: ticks in the rug, and faint lines through the panels for those that change the orbit."""
     entries = []
     height = 1 / max(len(result.special), 1)
     for row, (kind, places) in enumerate(result.special.items()):
-        text, dashes, colour = SPECIAL_LOOK.get(
-            kind, (kind.replace("_", " "), (0, (3, 1, 1, 1)), figures.PINK)
-        )
+        text, dashes, colour = SPECIAL_LOOK[kind]
         inside = places[(places >= edges[0]) & (places <= edges[-1])]
         rug.vlines(
             inside, 1 - (row + 0.88) * height, 1 - (row + 0.12) * height, color=colour, linewidth=1.3
         )
-        for axes in panels:
+        for axes in panels if dashes else []:
             axes.vlines(
                 inside,
                 0,
@@ -200,7 +200,7 @@ def draw_special(panels, rug, result, edges):
         if len(inside):
             entries.append(
                 Line2D(
-                    [], [], color=colour, linestyle=dashes, linewidth=1.2, label=f"{text} ({len(inside)})"
+                    [], [], color=colour, linestyle=dashes or "-", linewidth=1.2, label=f"{text} ({len(inside)})"
                 )
             )
     kinds = [kind for kind in result.special]

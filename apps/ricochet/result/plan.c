@@ -25,7 +25,7 @@ static void lay_out_sweep(plan *p) {
         .name = sweep->name,
         .type = COLUMN_F64,
         .extent = 1,
-        .units = entry->units,
+        .units = entry->units ? entry->units : "1", /* dimensionless */
         .long_name = entry->doc,
         .source = "swept parameter of the study",
     };

@@ -51,7 +51,7 @@ typedef struct schema_entry {
   bool later;              /* flag of a later version: `false` is accepted, `true` is refused as above */
   bool sweep;              /* numbers only: can be the parameter of a sweep */
   const char *no_sweep;    /* why it cannot be swept, for the refusal */
-  const char *units;       /* "" for dimensionless */
+  const char *units;       /* NULL for dimensionless */
   const char *doc;         /* one line for the reference */
 } schema_entry;
 

@@ -8,7 +8,7 @@
 #include "machine.h"
 #include "orbits_special.h"
 
-static const char *const outcome_names[] = {
+const char *const orbit_outcome_names[RIC_OUTCOME_COUNT] = {
 #define X(name, text) text,
     RIC_OUTCOME_LIST(X)
 #undef X
@@ -31,7 +31,7 @@ static void lay_out(const study_values *v, table *t) {
       {.name = "outcome",
        .type = COLUMN_ENUM,
        .extent = 1,
-       .names = outcome_names,
+       .names = orbit_outcome_names,
        .name_count = RIC_OUTCOME_COUNT,
        .units = "1",
        .long_name = "outcome of the orbit",

@@ -13,6 +13,7 @@ typedef struct special {
   int kind; /* index of special_names */
   double parameter;
   long mode, harmonic;
+  int outcome; /* ric_outcome of the orbit exactly there */
 } special;
 
 /* The range of the one sweep, and along what it goes. */
@@ -52,6 +53,24 @@ int orbits_special_plan(const study *s, const study_values *v, message *why) {
   study_place(s, KEY_ORBIT_SPECIAL_POINTS, place, sizeof place);
   return refuse(why, EXIT_USAGE, "%s: %zu resonances in the range of the sweep, expected at most %d", place, count,
                 MOST_POINTS);
+}
+
+/* What becomes of the orbit exactly there: most resonances do nothing to a pattern, and not every zero of the
+ * determinant is driven. */
+static ric_status judge(const chain_model *m, const ric_pattern *pattern, ric_orbit_solver *solver, const range *r,
+                        special *list, size_t count, ric_error *error) {
+  ric_orbit orbit;
+  ric_chain chain = m->chain;
+  ric_status status = ric_orbit_init(&orbit, chain.particles, ric_pattern_impacts(pattern), error);
+  for (size_t i = 0; i < count && status == RIC_OK; i++) {
+    if (r->along == RIC_ALONG_GAMMA)
+      chain.gamma = list[i].parameter;
+    status = ric_orbit_solve(solver, &chain, pattern, r->along == RIC_ALONG_GAMMA ? r->period : list[i].parameter,
+                             &orbit, error);
+    list[i].outcome = (int)orbit.outcome;
+  }
+  ric_orbit_clear(&orbit);
+  return status;
 }
 
 static int by_parameter(const void *a, const void *b) {
@@ -109,6 +128,14 @@ static void lay_out(table *t) {
        .units = "1",
        .long_name = "value of the swept parameter",
        .source = "[JAP] (11)-(12)"},
+      {.name = "outcome",
+       .type = COLUMN_ENUM,
+       .extent = 1,
+       .names = orbit_outcome_names,
+       .name_count = RIC_OUTCOME_COUNT,
+       .units = "1",
+       .long_name = "outcome of the orbit exactly there",
+       .source = "[JAP] (9)"},
       {.name = "mode",
        .type = COLUMN_I64,
        .extent = 1,
@@ -138,6 +165,7 @@ static int fill(extra_rows *extra, const special *list, size_t count) {
     unsigned char *row = extra->rows + i * t->row_bytes;
     row_put_word(row, table_column(t, "kind"), list[i].kind);
     row_put_number(row, table_column(t, "parameter"), list[i].parameter);
+    row_put_word(row, table_column(t, "outcome"), list[i].outcome);
     row_put_integer(row, table_column(t, "mode"), list[i].mode);
     row_put_integer(row, table_column(t, "harmonic"), list[i].harmonic);
   }
@@ -163,7 +191,7 @@ int orbits_special(const study *s, extra_rows *extra, message *why) {
     range r = range_of(s, v);
     lay_out(&extra->layout);
     list = list_points(&model, pattern, solver, &r, &count, &error);
-    done = list && fill(extra, list, count) == 0;
+    done = list && judge(&model, pattern, solver, &r, list, count, &error) == RIC_OK && fill(extra, list, count) == 0;
   }
   free(list);
   ric_orbit_solver_destroy(&solver);

@@ -4,6 +4,9 @@
 
 #include "kind.h"
 
+/** Words of ric_outcome. */
+extern const char *const orbit_outcome_names[RIC_OUTCOME_COUNT];
+
 /** Refuses `special_points: true` where the list would be too long. */
 int orbits_special_plan(const study *s, const study_values *v, message *why);
 
