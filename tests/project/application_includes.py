@@ -1,11 +1,11 @@
 """Includes of the application: mpi.h in run/ and result/ only, hdf5.h in result/ only, yaml.h in study/ only, public
-headers of the library only, and between rooms only towards study <- task, run, result <- command."""
+headers of the library only, and between rooms only towards study <- task, run <- result <- command."""
 import pathlib
 import re
 import sys
 
 ALLOWED = {"study": {"study"}, "task": {"task", "study"}, "run": {"run", "study"},
-           "result": {"result", "study", "task"}, "command": {"command", "study", "task", "run", "result"}}
+           "result": {"result", "study", "task", "run"}, "command": {"command", "study", "task", "run", "result"}}
 HOMES = {"mpi.h": {"run", "result"}, "hdf5.h": {"result"}, "hdf5_hl.h": {"result"}, "yaml.h": {"study"}}
 
 

@@ -8,6 +8,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <mpi.h>
+
 #include "synthetic.h"
 
 typedef struct scenario scenario;
@@ -136,7 +138,7 @@ static int run(const scenario *t) {
   honest_read = s.tables[0].read;
   if (t->prepare)
     t->prepare(&s);
-  int code = result_write(MPI_COMM_WORLD, t->path, &s.header, s.tables, SYNTHETIC_TABLES, t->commit, NULL, &why);
+  int code = result_write(t->path, &s.header, s.tables, SYNTHETIC_TABLES, t->commit, NULL, &why);
   setrlimit(RLIMIT_FSIZE, &before);
   synthetic_clear(&s);
   return check(t, code, &why);
@@ -149,7 +151,7 @@ static int run_good(void) {
   message why = {""};
   if (synthetic_init(&s, &size, ranks) != 0)
     return 1;
-  int code = result_write(MPI_COMM_WORLD, "good.h5", &s.header, s.tables, SYNTHETIC_TABLES, NULL, NULL, &why);
+  int code = result_write("good.h5", &s.header, s.tables, SYNTHETIC_TABLES, NULL, NULL, &why);
   if (!code)
     code = result_verify("good.h5", &why);
   if (code)

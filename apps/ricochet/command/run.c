@@ -125,7 +125,7 @@ static int write_result(run *r, message *why) {
   result_table tables[] = {{.layout = &r->plan.rows, .rows = study_tasks(r->study), .read = read_rows, .user = r},
                            {.layout = &r->extra.layout, .rows = r->extra.count, .read = read_extra, .user = &r->extra}};
   size_t count = r->extra.layout.column_count > 0 ? 2 : 1;
-  return result_write(MPI_COMM_WORLD, r->output.path, &header, tables, count, still_ours, r, why);
+  return result_write(r->output.path, &header, tables, count, still_ours, r, why);
 }
 
 /* Everything after the tasks: their rows into the result. */

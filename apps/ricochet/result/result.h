@@ -11,7 +11,6 @@
 #ifndef RICOCHET_APP_RESULT_H
 #define RICOCHET_APP_RESULT_H
 
-#include <mpi.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -52,7 +51,7 @@ typedef struct result_header {
   uint64_t tasks_computed, tasks_resumed;
 } result_header;
 
-/** Collective over `comm`: writes `path`.tmp, re-opens and verifies it, syncs, and, when `commit` agrees on rank 0,
+/** Collective over all ranks: writes `path`.tmp, re-opens and verifies it, syncs, and, when `commit` agrees on rank 0,
  *  renames it to `path` and syncs the folder. On any failure the temporary file is removed and all ranks return the
  * same code with the same message, that of the lowest rank that failed.
  *
@@ -60,8 +59,8 @@ typedef struct result_header {
  *  @param commit  asked on rank 0 just before the rename (the lock is still ours?); 0 agrees; NULL always does
  *  @returns 0; EXIT_FILES when it cannot be written; EXIT_RUN when tables contradict each other or memory runs out;
  * what `read` or `commit` returned */
-int result_write(MPI_Comm comm, const char *path, const result_header *header, const result_table *tables,
-                 size_t table_count, int (*commit)(void *user, message *why), void *user, message *why);
+int result_write(const char *path, const result_header *header, const result_table *tables, size_t table_count,
+                 int (*commit)(void *user, message *why), void *user, message *why);
 
 /** Reads every data set of the file through its checksums, and checks the study's text and the references to the axes,
  *  on this process alone, without MPI_Init.

@@ -2,7 +2,6 @@
 
 #include <errno.h>
 #include <fcntl.h>
-#include <limits.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -10,6 +9,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "../run/ranks.h"
 #include "hdf5_call.h"
 #include "plan.h"
 #include "rows.h"
@@ -17,26 +17,9 @@
 #include "verify.h"
 
 typedef struct writer {
-  MPI_Comm comm;
-  int rank, ranks;
   plan plan;
   place at;
 } writer;
-
-/* --- agreement --- */
-
-/* Collective: when any rank failed, all return the code of the lowest such rank and hold its message. */
-static int agree(const writer *w, int code) {
-  int mine = code ? w->rank : INT_MAX, lowest = INT_MAX;
-  if (MPI_Allreduce(&mine, &lowest, 1, MPI_INT, MPI_MIN, w->comm) != MPI_SUCCESS)
-    return refuse(w->at.why, EXIT_RUN, "%s: ranks lost contact with each other", w->at.path);
-  if (lowest == INT_MAX)
-    return 0;
-  if (MPI_Bcast(&code, 1, MPI_INT, lowest, w->comm) != MPI_SUCCESS ||
-      MPI_Bcast(w->at.why->text, (int)sizeof w->at.why->text, MPI_CHAR, lowest, w->comm) != MPI_SUCCESS)
-    return refuse(w->at.why, EXIT_RUN, "%s: ranks lost contact with each other", w->at.path);
-  return code;
-}
 
 /* Collective: each rank looks whether it has the file that rank 0 made. */
 static int file_in_sight(const writer *w) {
@@ -49,17 +32,14 @@ static int file_in_sight(const writer *w) {
   if (!failed)
     size = (long long)mine.st_size;
   long long first = size;
-  if (MPI_Bcast(&first, 1, MPI_LONG_LONG, 0, w->comm) != MPI_SUCCESS)
-    return refuse(w->at.why, EXIT_RUN, "%s: ranks lost contact with each other", w->at.path);
+  ranks_share(&first, sizeof first);
   if (failed)
-    return refuse(w->at.why, EXIT_FILES, "%s: rank %d cannot open it: %s", w->at.path, w->rank, strerror(failed));
+    return refuse(w->at.why, EXIT_FILES, "%s: rank %d cannot open it: %s", w->at.path, ranks_rank(), strerror(failed));
   if (size != first)
     return refuse(w->at.why, EXIT_FILES, "%s: rank %d sees %lld bytes, rank 0 %lld: is the folder shared by all nodes?",
-                  w->at.path, w->rank, size, first);
+                  w->at.path, ranks_rank(), size, first);
   return 0;
 }
-
-/* --- publication --- */
 
 static int sync_at(const writer *w, const char *path) {
   int handle = open(path, O_RDONLY);
@@ -95,24 +75,23 @@ static int publish(const writer *w, int (*commit)(void *user, message *why), voi
   return code ? code : sync_folder(w);
 }
 
-int result_write(MPI_Comm comm, const char *path, const result_header *header, const result_table *tables,
-                 size_t table_count, int (*commit)(void *user, message *why), void *user, message *why) {
-  writer w = {.comm = comm, .at = {path, why}};
+int result_write(const char *path, const result_header *header, const result_table *tables, size_t table_count,
+                 int (*commit)(void *user, message *why), void *user, message *why) {
+  writer w = {.at = {path, why}};
+  int rank = ranks_rank(), ranks = ranks_count();
   hdf5_quiet();
-  MPI_Comm_rank(comm, &w.rank);
-  MPI_Comm_size(comm, &w.ranks);
-  int code = agree(&w, plan_init(&w.plan, path, header, tables, table_count, why));
+  int code = ranks_agree(plan_init(&w.plan, path, header, tables, table_count, why), why);
   if (!code)
-    code = agree(&w, w.rank == 0 ? space_create(&w.plan, &w.at) : 0);
+    code = ranks_agree(rank == 0 ? space_create(&w.plan, &w.at) : 0, why);
   if (!code)
-    code = agree(&w, file_in_sight(&w));
+    code = ranks_agree(file_in_sight(&w), why);
   if (!code)
-    code = agree(&w, rows_write(&w.plan, &w.at, w.rank, w.ranks));
+    code = ranks_agree(rows_write(&w.plan, &w.at, rank, ranks), why);
   if (!code)
-    code = agree(&w, verify_part(&w.at, w.plan.partial, &w.plan, w.rank, w.ranks));
+    code = ranks_agree(verify_part(&w.at, w.plan.partial, &w.plan, rank, ranks), why);
   if (!code)
-    code = agree(&w, w.rank == 0 ? publish(&w, commit, user) : 0);
-  if (code && w.rank == 0 && w.plan.partial)
+    code = ranks_agree(rank == 0 ? publish(&w, commit, user) : 0, why);
+  if (code && rank == 0 && w.plan.partial)
     unlink(w.plan.partial); /* absent when it failed before there was one */
   plan_clear(&w.plan);
   return code;
