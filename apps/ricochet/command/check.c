@@ -59,7 +59,7 @@ int command_check(int argc, char **argv) {
   int code = sets ? 0 : refuse(&why, EXIT_RUN, "no memory for the options"), done = 0;
   opterr = 0;
   for (int option = 0; !code && !done && option != -1;) {
-    int at = optind;
+    char text[3];
     option = getopt_long(argc, argv, ":h", options, NULL);
     if (option == 's')
       sets[set_count++] = optarg;
@@ -67,8 +67,10 @@ int command_check(int argc, char **argv) {
       option == 'h' ? (void)fputs(help, stdout) : schema_reference(stdout);
       done = 1;
     } else if (option != -1)
-      code = refuse(&why, EXIT_USAGE, "ricochet check: %s %s (see ricochet check --help)",
-                    option == ':' ? "missing value of" : "unknown option", argv[at]);
+      code = refuse(&why, EXIT_USAGE,
+                    option == ':' ? "ricochet check: %s needs a value (see ricochet check --help)"
+                                  : "ricochet check: unknown option %s (see ricochet check --help)",
+                    refused_option(argv, text));
   }
   if (!code && !done && argc - optind != 1)
     code = refuse(&why, EXIT_USAGE, "ricochet check: %d study files given, expected one (see ricochet check --help)",

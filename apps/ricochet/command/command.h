@@ -10,6 +10,9 @@ int command_check(int argc, char **argv);
 int command_show(int argc, char **argv);
 int command_examples(int argc, char **argv);
 
+/** The option that getopt_long has just refused, as the user wrote it. @param text  [3] for a short one */
+const char *refused_option(char **argv, char text[3]);
+
 /** Prints "ricochet: MESSAGE" on standard error, or the bare message when it begins with a place; returns code. */
 int complain(int code, const message *why);
 

@@ -7,6 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "command.h"
+
 double parse_duration(const char *text) {
   static const struct {
     const char *unit;
@@ -38,6 +40,16 @@ static int read_progress(const char *text, progress_mode *mode, message *why) {
       return 0;
     }
   return refuse(why, EXIT_USAGE, "--progress %s: expected auto, always or never", text);
+}
+
+const char *refused_option(char **argv, char text[3]) {
+  const char *word = argv[optind - 1];
+  if (strncmp(word, "--", 2) == 0 || optopt == 0)
+    return word;
+  text[0] = '-';
+  text[1] = (char)optopt;
+  text[2] = '\0';
+  return text;
 }
 
 static const struct option run_long_options[] = {{"output", required_argument, NULL, 'o'},
@@ -100,10 +112,11 @@ int run_options_parse(int argc, char **argv, run_options *o, message *why) {
   optind = 1;
   opterr = 0;
   for (;;) {
-    int at = optind, option = getopt_long(argc, argv, ":o:h", run_long_options, NULL);
+    char text[3];
+    int option = getopt_long(argc, argv, ":o:h", run_long_options, NULL);
     if (option == -1)
       break;
-    int code = take_option(o, option, optarg, argv[at], why);
+    int code = take_option(o, option, optarg, refused_option(argv, text), why);
     if (code)
       return code;
   }

@@ -1,9 +1,9 @@
 #include "output.h"
 
-#include <errno.h>
 #include <dirent.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "../result/result.h"
@@ -18,14 +18,21 @@ static void stem_of(const char *path, char *stem, size_t size) {
   snprintf(stem, size, "%.*s", (int)(length < size ? length : size - 1), name);
 }
 
+static bool is_folder(const char *path) {
+  struct stat there;
+  return stat(path, &there) == 0 && S_ISDIR(there.st_mode);
+}
+
 int output_name(output *out, const run_options *o, message *why) {
   char stem[4000];
-  *out = (output){.finished = false};
+  *out = (output){.lock = NULL};
   stem_of(o->study_path, stem, sizeof stem);
   int length = o->output ? snprintf(out->path, sizeof out->path, "%s", o->output)
                          : snprintf(out->path, sizeof out->path, "%s.h5", stem);
   if (length <= 0 || length >= 4000)
     return refuse(why, EXIT_USAGE, "-o: a path of %d bytes, expected 1 to 3999", length);
+  if (is_folder(out->path))
+    return refuse(why, EXIT_USAGE, "%s: is a folder, expected the name of a file", out->path);
   snprintf(out->folder, sizeof out->folder, "%s.ckpt", out->path);
   return 0;
 }
@@ -45,55 +52,58 @@ static bool has_checkpoint(const char *folder) {
   return found;
 }
 
-/* The result that is there, under --resume. */
-static int look_at_result(output *out, uint64_t digest, message *why) {
-  uint64_t theirs;
-  message detail;
-  if (result_study_digest(out->path, &theirs, &detail) != 0 || result_verify(out->path, &detail) != 0)
-    return refuse(why, EXIT_FILES, "%s; use --force to compute it again", detail.text);
-  if (theirs != digest)
-    return refuse(why, EXIT_USAGE, "%s: is the result of another study; use -o or --force", out->path);
-  out->finished = true;
-  return 0;
+static int refuse_existing(const output *out, message *why) {
+  return refuse(why, EXIT_USAGE, "%s: exists; use --force to replace it, --resume to finish it, or -o for another one",
+                out->path);
 }
 
-static int look_around(output *out, const run_options *o, uint64_t digest, message *why) {
+static int look_around(const output *out, const run_options *o, message *why) {
+  if (o->resume)
+    return 0;
   if (o->force)
     return checkpoint_remove(out->folder, why);
-  if (o->resume)
-    return exists(out->path) ? look_at_result(out, digest, why) : 0;
-  if (exists(out->path))
-    return refuse(why, EXIT_USAGE,
-                  "%s: exists; use --force to replace it, --resume to finish it, or -o for another one", out->path);
+  if (exists(out->path)) /* again: it may have come while the lock was taken */
+    return refuse_existing(out, why);
   if (has_checkpoint(out->folder))
     return refuse(why, EXIT_USAGE,
                   "%s: checkpoint of an unfinished run; use --resume to go on or --force to start over", out->folder);
   return 0;
 }
 
-static int check_room(const output *out, double needed, message *why) {
+int output_claim(output *out, const run_options *o, message *why) {
+  if (!o->force && !o->resume && exists(out->path)) /* before a folder is made for the lock */
+    return refuse_existing(out, why);
+  int code = lock_take(out->folder, o->resume ? 10 : 0, &out->lock, why);
+  if (!code)
+    code = look_around(out, o, why);
+  if (code)
+    lock_release(&out->lock, 1);
+  return code;
+}
+
+int output_look_at_result(const output *out, uint64_t digest, uint64_t tasks, uint64_t done, bool *finished,
+                          message *why) {
+  uint64_t theirs = 0;
+  message detail;
+  *finished = false;
+  if (!exists(out->path) || (done > 0 && done < tasks))
+    return 0;
+  bool sound = result_study_digest(out->path, &theirs, &detail) == 0 && result_verify(out->path, &detail) == 0;
+  *finished = sound && theirs == digest;
+  if (*finished || done == tasks) /* a complete checkpoint replaces whatever a forced run was to replace */
+    return 0;
+  if (!sound)
+    return refuse(why, EXIT_FILES, "%s; use --force to compute it again", detail.text);
+  return refuse(why, EXIT_USAGE, "%s: is the result of another study; use -o or --force", out->path);
+}
+
+int output_check_room(const output *out, double needed, message *why) {
   char needs[32], has[32];
   double disk = machine_disk(out->path);
   if (needed <= disk)
     return 0;
-  return refuse(why, EXIT_FILES, "%s: checkpoint and result take %s, the folder has %s free", out->path,
+  return refuse(why, EXIT_FILES, "%s: checkpoint and result take %s more, the folder has %s free", out->path,
                 machine_size(needed, needs, sizeof needs), machine_size(disk, has, sizeof has));
-}
-
-int output_claim(output *out, const run_options *o, uint64_t digest, double needed, message *why) {
-  if (!o->force && !o->resume) { /* before a folder is made for the lock */
-    int code = look_around(out, o, digest, why);
-    if (code)
-      return code;
-  }
-  int code = lock_take(out->folder, o->resume ? 10 : 0, &out->lock, why);
-  if (!code)
-    code = look_around(out, o, digest, why);
-  if (!code && !out->finished)
-    code = check_room(out, needed, why);
-  if (code)
-    lock_release(&out->lock, 1);
-  return code;
 }
 
 int output_join(output *out, message *why) {
@@ -101,12 +111,12 @@ int output_join(output *out, message *why) {
   return ranks_agree(code, why);
 }
 
-void output_release(output *out, bool done) {
+void output_release(output *out, bool drop) {
   message ignored; /* a checkpoint that stays behind is no failure of the run */
-  if (ranks_rank() == 0 && done)
+  if (ranks_rank() == 0 && drop)
     checkpoint_remove(out->folder, &ignored);
   if (ranks_rank() != 0)
     lock_release(&out->lock, 0);
   ranks_barrier();
-  lock_release(&out->lock, done);
+  lock_release(&out->lock, 1);
 }

@@ -1,4 +1,5 @@
 /* ricochet run: a study from its file to its result. */
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -40,6 +41,7 @@ typedef struct run {
   char *command;
   double began;
   uint64_t resumed;
+  bool finished;         /* --resume found the result there */
   uint64_t outcomes[64]; /* tasks by word of the outcome column */
 } run;
 
@@ -61,20 +63,25 @@ static int load(run *r, message *why) {
   return ranks_agree(r->kind->plan(r->study, &r->plan, why), why);
 }
 
-/* Checkpoint and result hold every row once each. */
-static double bytes_needed(const run *r) {
-  return 2 * (double)study_tasks(r->study) * (double)r->plan.rows.row_bytes;
-}
-
 static int claim(run *r, message *why) {
   int code = output_name(&r->output, &r->options, why);
-  if (code)
-    return code;
-  if (ranks_rank() == 0)
-    code = output_claim(&r->output, &r->options, study_digest(r->study), bytes_needed(r), why);
+  if (!code && ranks_rank() == 0)
+    code = output_claim(&r->output, &r->options, why);
   code = ranks_agree(code, why);
-  ranks_share(&r->output.finished, sizeof r->output.finished);
-  return code || r->output.finished ? code : output_join(&r->output, why);
+  return code ? code : output_join(&r->output, why);
+}
+
+/* Rank 0 looks at the result that may be there and at the room for the one to come, which holds every row once; the
+ * checkpoint grows by those that are missing. */
+static int look_before_computing(run *r, message *why) {
+  uint64_t tasks = study_tasks(r->study);
+  double row = (double)r->plan.rows.row_bytes;
+  int code = r->options.resume
+                 ? output_look_at_result(&r->output, study_digest(r->study), tasks, r->resumed, &r->finished, why)
+                 : 0;
+  if (!code && !r->finished)
+    code = output_check_room(&r->output, row * (double)tasks + row * (double)(tasks - r->resumed), why);
+  return code;
 }
 
 static int open_checkpoint(run *r, message *why) {
@@ -82,8 +89,11 @@ static int open_checkpoint(run *r, message *why) {
       .digest = study_digest(r->study), .tasks = study_tasks(r->study), .row_bytes = r->plan.rows.row_bytes};
   snprintf(identity.version, sizeof identity.version, "%s %s", build_version(), build_git_sha());
   int code = ranks_agree(checkpoint_open(r->output.folder, &identity, &r->checkpoint, why), why);
-  if (!code)
-    r->resumed = checkpoint_done(r->checkpoint);
+  if (code)
+    return code;
+  r->resumed = checkpoint_done(r->checkpoint);
+  code = ranks_agree(ranks_rank() == 0 ? look_before_computing(r, why) : 0, why);
+  ranks_share(&r->finished, sizeof r->finished);
   return code;
 }
 
@@ -160,28 +170,44 @@ static void print_summary(const run *r) {
   printf(" -> %s (%.3g s computing, %.3g s in all)\n", r->output.path, r->computed.seconds, clock_seconds() - r->began);
 }
 
+/* Whether the checkpoint holds nothing that a later run could use. When in doubt it does. */
+static bool is_useless(run *r) {
+  message ignored;
+  bool useless =
+      r->checkpoint && checkpoint_rescan(r->checkpoint, &ignored) == 0 && checkpoint_done(r->checkpoint) == 0;
+  ranks_share(&useless, sizeof useless);
+  return useless;
+}
+
+static int compute_and_write(run *r, message *why) {
+  int code = compute(r->study, r->kind, &r->plan, r->checkpoint, &r->options, &r->computed, why);
+  return code ? code : assemble(r, why);
+}
+
+static void say_how_it_ended(const run *r) {
+  if (ranks_rank() != 0)
+    return;
+  if (r->finished)
+    printf("%s: finished and verified, nothing to do\n", r->output.path);
+  else
+    print_summary(r);
+}
+
 static int run_study(run *r, message *why) {
   int code = load(r, why);
   if (!code)
     code = claim(r, why);
   if (code)
     return code;
-  if (r->output.finished) {
-    if (ranks_rank() == 0) {
-      printf("%s: finished and verified, nothing to do\n", r->output.path);
-      lock_release(&r->output.lock, 1);
-    }
-    return 0;
-  }
   code = open_checkpoint(r, why);
-  if (!code)
-    code = compute(r->study, r->kind, &r->plan, r->checkpoint, &r->options, &r->computed, why);
-  if (!code)
-    code = assemble(r, why);
+  if (!code && !r->finished)
+    code = compute_and_write(r, why);
+  ranks_barrier(); /* nobody appends any more */
+  bool useless = is_useless(r);
   checkpoint_close(&r->checkpoint);
-  output_release(&r->output, code == 0);
-  if (!code && ranks_rank() == 0)
-    print_summary(r);
+  output_release(&r->output, code == 0 || useless);
+  if (!code)
+    say_how_it_ended(r);
   return code;
 }
 
@@ -199,27 +225,23 @@ static char *join_words(int argc, char **argv) {
   return line;
 }
 
-static int run_on_ranks(run *r, int argc, char **argv, message *why) {
-  r->command = join_words(argc, argv);
-  if (!r->command)
-    return refuse(why, EXIT_RUN, "no memory for the command line");
-  stop_watch(r->options.max_seconds);
-  return run_study(r, why);
-}
-
 int command_run(int argc, char **argv) {
   run r = {0};
   message why;
-  int code = run_options_parse(argc, argv, &r.options, &why);
+  r.command = join_words(argc, argv); /* before the options are sorted */
+  int code = r.command ? run_options_parse(argc, argv, &r.options, &why)
+                       : refuse(&why, EXIT_RUN, "no memory for the command line");
   if (!code && r.options.help) {
+    free(r.command);
     fputs(help, stdout);
     run_options_clear(&r.options);
     return finish_output(0);
   }
   ranks_start(&argc, &argv);
   r.began = clock_seconds();
+  stop_watch(r.options.max_seconds);
   if (!code)
-    code = run_on_ranks(&r, argc, argv, &why);
+    code = run_study(&r, &why);
   int speaks = ranks_rank() == 0;
   ranks_finish();
   if (code && speaks)

@@ -39,7 +39,7 @@ int command_show(int argc, char **argv) {
   int code = 0;
   opterr = 0;
   for (int option = 0; !code && option != -1;) {
-    int at = optind;
+    char text[3];
     option = getopt_long(argc, argv, "h", options, NULL);
     if (option == 'c') {
       w = SHOW_CSV;
@@ -49,7 +49,8 @@ int command_show(int argc, char **argv) {
     else if (option == 'h')
       w = SHOW_HELP;
     else if (option != -1)
-      code = refuse(&why, EXIT_USAGE, "ricochet show: unknown option %s (see ricochet show --help)", argv[at]);
+      code = refuse(&why, EXIT_USAGE, "ricochet show: unknown option %s (see ricochet show --help)",
+                    refused_option(argv, text));
   }
   if (!code && w == SHOW_HELP) {
     fputs(help, stdout);

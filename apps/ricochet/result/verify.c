@@ -7,6 +7,7 @@
 
 #include "attribute.h"
 #include "heap.h"
+#include "objects.h"
 #include "reader.h"
 #include "result.h"
 
@@ -202,6 +203,8 @@ int verify_part(const place *at, const char *path, const plan *expected, int par
     code = check_sets(&v, "/");
   if (!code)
     code = check_groups(&v);
+  if (!code && part == 0)
+    code = objects_check(at, v.file);
   return hdf5_close(at, v.file, code);
 }
 

@@ -1,0 +1,239 @@
+#!/usr/bin/python3
+"""Runs the plotting scripts on small studies: test_figures.py RICOCHET_BINARY SOURCE_DIR.
+
+What a figure shows is for eyes; here it must exist as a large PNG with something on it and as a well-formed
+SVG, for sweeps of every shape the scripts take, and what they cannot draw must end with one line and
+exit code 2.
+"""
+
+import os
+import subprocess
+import sys
+import tempfile
+import traceback
+import xml.etree.ElementTree
+from concurrent.futures import ThreadPoolExecutor
+
+import h5py
+import matplotlib.image
+import numpy as np
+
+RING = """kind: orbits
+title: {title}
+model: {{type: chain, particles: 6, ends: periodic, gamma: 0.1, floor: -1}}
+orbit: {{period: 1.5 pi, at_start: [3]{orbit}}}
+sweep:
+{sweep}
+"""
+GAMMA = "  - {{parameter: model.gamma, {}}}"
+
+
+def ring(title, sweep, orbit=""):
+    return RING.format(title=title, sweep=sweep, orbit=orbit)
+
+
+STUDIES = {
+    "family": ring("a family", GAMMA.format("from: 0, to: 0.19, points: 12")),
+    "poles": ring(
+        "costs 5 $ and 6 $", GAMMA.format("from: 0, to: 1.2, points: 121"), ", special_points: true"
+    ),
+    "falling": ring("falling values", GAMMA.format("values: [0.15, 0.1, 0.12, 0]")),
+    "one": ring("a single point", GAMMA.format("values: [0.1]")),
+    "logarithmic": ring("equal ratios", GAMMA.format("from: 1e-4, to: 0.1, points: 7, scale: log")),
+    "exact": ring(
+        "through gamma_c exactly",
+        GAMMA.format("values: [0.18, 0.19, 0.194, 0.19444, 0.1944444, " "0.1944444444444444444]"),
+    ),
+    "grid": ring(
+        "a grid",
+        "  - {parameter: orbit.period, values: [6, 5.6, 5, 4.5, 4.2, 3.9, 3.4]}\n"
+        + GAMMA.format("from: 0, to: 0.6, points: 9"),
+    ),
+    "stateless": ring("no states", GAMMA.format("from: 0, to: 0.19, points: 3"), ", states: false"),
+    "floors": """kind: orbits
+title: the floor of one particle
+model: {type: chain, particles: 5, ends: free, gamma: 0.1, floor: [-1, -1, null, -1, -1]}
+orbit:
+  period: 1.5 pi
+  at_start:
+    - 1
+  at_half: [4]
+sweep:
+  - {parameter: "model.floor[3]", values: [-0.9, -0.1, -0.001, -0.5]}
+""",
+}
+
+# script, study, options
+FIGURES = [
+    ("plot_modes.py", "family", []),
+    ("plot_modes.py", "poles", ["--all", "--curves", "20"]),
+    ("plot_modes.py", "floors", []),
+    ("plot_modes.py", "one", []),
+    ("plot_modes.py", "logarithmic", []),
+    ("plot_modes.py", "broken", []),
+    ("plot_sweep.py", "family", []),
+    ("plot_sweep.py", "poles", []),
+    ("plot_sweep.py", "falling", []),
+    ("plot_sweep.py", "one", []),
+    ("plot_sweep.py", "logarithmic", []),
+    ("plot_sweep.py", "stateless", []),
+    ("plot_sweep.py", "broken", []),
+    ("plot_sweep.py", "nothing", []),
+    ("plot_map.py", "grid", []),
+    ("plot_map.py", "grid", ["--swap", "--quantity", "clearance"]),
+    ("plot_map.py", "grid", ["--quantity", "none"]),
+    ("plot_map.py", "broken_grid", []),
+    ("plot_approach.py", "exact", []),
+]
+
+# script, file, words of the message
+REFUSALS = [
+    ("plot_modes.py", "absent.h5", "no such file"),
+    ("plot_sweep.py", "text.h5", "not a readable result"),
+    ("plot_map.py", "truncated.h5", "not a readable result"),
+    ("plot_approach.py", "foreign.h5", "not a result of kind orbits"),
+    ("plot_map.py", "family.h5", "1 swept parameters (model.gamma), this figure needs 2"),
+    ("plot_sweep.py", "grid.h5", "2 swept parameters (orbit.period, model.gamma), this figure needs 1"),
+    ("plot_modes.py", "stateless.h5", "no /orbits/q"),
+    ("plot_approach.py", "family.h5", "0 tasks with the outcome grazing"),
+]
+
+
+def run_studies(binary, folder):
+    for name, text in STUDIES.items():
+        study = os.path.join(folder, name + ".yaml")
+        with open(study, "w", encoding="utf-8") as file:
+            file.write(text)
+        subprocess.run(
+            [binary, "run", study, "-o", os.path.join(folder, name + ".h5"), "--progress", "never"],
+            check=True,
+            capture_output=True,
+            timeout=60,
+        )
+
+
+def break_rows(source, target, rows):
+    """A copy in which some tasks failed: their numbers are NaN, as the program writes them."""
+    with h5py.File(source, "r") as old, h5py.File(target, "w") as new:
+        for group in ("orbits", "sweep", "special"):
+            if group in old:
+                old.copy(group, new)
+        for name in ("title", "study"):
+            new.attrs[name] = old.attrs[name]
+        orbits = new["orbits"]
+        kinds = h5py.check_enum_dtype(orbits["outcome"].dtype)
+        for i, row in enumerate(rows):
+            orbits["outcome"][row] = kinds[("failed", "singular", "not_converged", "resonant")[i % 4]]
+            for column in orbits.values():
+                if column.dtype.kind == "f":
+                    column[row] = np.nan
+
+
+def make_files(folder):
+    at = lambda name: os.path.join(folder, name)  # noqa: E731
+    break_rows(at("poles.h5"), at("broken.h5"), [0, 5, 6, 40, 41, 80, 120])
+    break_rows(at("falling.h5"), at("nothing.h5"), range(4))
+    break_rows(at("grid.h5"), at("broken_grid.h5"), [3, 20, 21, 62])
+    with open(at("text.h5"), "w", encoding="utf-8") as file:
+        file.write("no HDF5\n")
+    with open(at("family.h5"), "rb") as whole, open(at("truncated.h5"), "wb") as part:
+        part.write(whole.read(3000))
+    with h5py.File(at("foreign.h5"), "w") as file:
+        file["numbers"] = np.arange(3)
+
+
+def call(scripts, folder, script, name, *options):
+    return subprocess.run(
+        [os.path.join(scripts, script), name, *options],
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        timeout=60,
+    )
+
+
+def check_files(stem):
+    with open(stem + ".png", "rb") as file:
+        assert file.read(8) == b"\x89PNG\r\n\x1a\n", "no PNG signature"
+    pixels = matplotlib.image.imread(stem + ".png")
+    assert pixels.shape[1] >= 1000, f"{pixels.shape[1]} pixels wide"
+    colours = len(np.unique((pixels[::3, ::3, :3] * 16).astype(int).reshape(-1, 3), axis=0))
+    assert colours >= 8, f"only {colours} colours: blank?"
+    border = np.concatenate([pixels[0], pixels[-1], pixels[:, 0], pixels[:, -1]])[:, :3]
+    assert (border == 1).all(), "something is cut off at the border"
+    root = xml.etree.ElementTree.parse(stem + ".svg").getroot()
+    assert root.tag.endswith("svg") and len(list(root.iter())) > 50, "an empty SVG"
+
+
+def figure_is_drawn(scripts, folder, script, name, options):
+    stem = os.path.join(folder, "_".join([script[:-3], name] + [option.strip("-") for option in options]))
+    done = call(scripts, folder, script, name + ".h5", "-o", stem, *options)
+    assert done.returncode == 0 and done.stderr == "", f"exit {done.returncode}: {done.stderr}"
+    assert done.stdout.split() == [stem + ".png", stem + ".svg"], done.stdout
+    check_files(stem)
+
+
+def default_names_stand_beside_the_result(scripts, folder):
+    done = call(scripts, "/", "plot_modes.py", os.path.join(folder, "family.h5"))
+    assert done.returncode == 0, done.stderr
+    check_files(os.path.join(folder, "family_modes"))
+
+
+def refusal_is_one_line(scripts, folder, script, name, words):
+    before = set(os.listdir(folder))
+    done = call(scripts, folder, script, name, "-o", "refused_" + script)
+    assert done.returncode == 2, f"exit {done.returncode}"
+    assert done.stderr.count("\n") == 1 and done.stderr.startswith(f"{script}: {name}: "), done.stderr
+    assert words in done.stderr, done.stderr
+    assert not [new for new in set(os.listdir(folder)) - before if new.startswith("refused_" + script)]
+
+
+def unwritable_output_is_one_line(scripts, folder):
+    done = call(scripts, folder, "plot_sweep.py", "family.h5", "-o", "no/such/folder/figure")
+    assert (
+        done.returncode == 2 and done.stderr.count("\n") == 1 and "cannot write" in done.stderr
+    ), done.stderr
+
+
+def help_names_the_datasets(scripts, folder, script):
+    done = call(scripts, folder, script, "--help")
+    assert (
+        done.returncode == 0 and "/orbits/outcome" in done.stdout and "--output" in done.stdout
+    ), done.stdout
+
+
+def cases(scripts, folder):
+    yield from ((figure_is_drawn, scripts, folder, *figure) for figure in FIGURES)
+    yield from ((refusal_is_one_line, scripts, folder, *refusal) for refusal in REFUSALS)
+    yield (default_names_stand_beside_the_result, scripts, folder)
+    yield (unwritable_output_is_one_line, scripts, folder)
+    for script in sorted({figure[0] for figure in FIGURES}):
+        yield (help_names_the_datasets, scripts, folder, script)
+
+
+def passes(case):
+    test, _scripts, _folder, *rest = case
+    try:
+        test(*case[1:])
+    except Exception:  # a test that breaks is a test that fails; the others still run
+        print(f"FAILED {test.__name__} {rest}\n{traceback.format_exc()}", flush=True)
+        return False
+    return True
+
+
+def main():
+    if len(sys.argv) != 3:
+        print(__doc__.splitlines()[0], file=sys.stderr)
+        return 2
+    binary, scripts = os.path.abspath(sys.argv[1]), os.path.abspath(os.path.join(sys.argv[2], "scripts"))
+    with tempfile.TemporaryDirectory() as folder:
+        run_studies(binary, folder)
+        make_files(folder)
+        with ThreadPoolExecutor(2) as pool:
+            outcomes = list(pool.map(passes, cases(scripts, folder)))
+    print(f"{sum(outcomes)} passed, {len(outcomes) - sum(outcomes)} failed")
+    return 0 if all(outcomes) else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,347 @@
+"""What a result holds and how it opens: the schema that scripts rely on, and values of the impact chain."""
+
+import csv
+import functools
+import io
+
+import h5py
+import numpy as np
+import program
+import xarray
+from program import assert_same, names, study, sweep, test, words_of, write
+
+TABLE = "{parameter: model.gamma, values: [0.05, 0.149153131912, 0.187, 0.19444444444444445]}"
+
+
+def run(ricochet, folder, text, *words, name="s", **options):
+    write(folder, f"{name}.yaml", text)
+    ricochet.run(f"{name}.yaml", *words, cwd=folder, **options).expect_done()
+    return folder / f"{name}.h5"
+
+
+@functools.cache
+def shipped(ricochet):
+    """The results of all shipped studies, computed once."""
+    paths = sorted(ricochet.studies.glob("*.yaml"))
+    for path in paths:
+        ricochet.run(path, cwd=ricochet.shared).expect_done()
+    return [ricochet.shared / f"{path.stem}.h5" for path in paths]
+
+
+def data_sets(file):
+    found = []
+    file.visititems(lambda name, thing: found.append(thing) if isinstance(thing, h5py.Dataset) else None)
+    return found
+
+
+# --- how results open ---
+
+
+@test
+def xarray_opens_every_group_with_no_option(ricochet, folder):
+    for path in shipped(ricochet):
+        with h5py.File(path) as file:
+            groups = [name for name in file if isinstance(file[name], h5py.Group)]
+            assert {"orbits", "sweep", "run"} <= set(groups), groups
+            for group in groups:
+                with xarray.open_dataset(path, engine="h5netcdf", group=group) as opened:
+                    assert not [d for d in opened.sizes if "phantom" in d], (path, group, opened.sizes)
+                    assert set(opened.variables) == set(file[group]), (path, group)
+                    for name, variable in opened.variables.items():
+                        assert variable.shape == file[group][name].shape
+
+
+@test
+def axes_are_named_as_in_the_contract(ricochet, folder):
+    path = run(ricochet, folder, study(at_start="[3, 9]", orbit="at_half: [5], special_points: true", sweep=sweep(7)))
+    with xarray.open_dataset(path, engine="h5netcdf", group="orbits") as orbits:
+        assert dict(orbits.sizes) == {"task": 7, "particle": 30, "impact": 3}
+        assert orbits.q.dims == orbits.v.dims == ("task", "particle")
+        assert orbits.impulse.dims == ("task", "impact")
+        for name in ("outcome", "reason", "energy", "residual", "clearance", "clearance_time", "clearance_particle"):
+            assert orbits[name].dims == ("task",), name
+    with xarray.open_dataset(path, engine="h5netcdf", group="sweep") as swept:
+        assert swept["model.gamma"].dims == ("task",)
+
+
+@test
+def every_axis_hangs_on_a_scale_of_the_root_group(ricochet, folder):
+    for path in shipped(ricochet):
+        with h5py.File(path) as file:
+            for data in data_sets(file):
+                if data.parent.name == "/":
+                    assert h5py.h5ds.is_scale(data.id), data.name
+                    assert (data[()] == np.arange(data.size)).all(), data.name
+                    continue
+                for axis in data.dims:
+                    assert len(axis) == 1 and axis[0].parent.name == "/", data.name
+                    assert axis[0].size == data.shape[list(data.dims).index(axis)], data.name
+
+
+@test
+def every_data_set_has_checksums_and_says_what_it_is(ricochet, folder):
+    for path in shipped(ricochet):
+        with h5py.File(path) as file:
+            for data in data_sets(file):
+                assert data.fletcher32 and data.chunks, data.name
+                assert h5py.check_string_dtype(data.dtype) is None or h5py.check_string_dtype(data.dtype).length
+                for attribute in ("units", "long_name", "source"):
+                    assert attribute in data.attrs, (data.name, attribute)
+
+
+@test
+def enums_are_read_by_name(ricochet, folder):
+    path = run(ricochet, folder, study(at_start="[15]", orbit="special_points: true", sweep=sweep(251, 0, 0.25)))
+    with h5py.File(path) as file:
+        outcomes = words_of(file["orbits/outcome"])
+        assert {"admissible", "inadmissible"} <= set(outcomes), set(outcomes)
+        known = set(h5py.check_enum_dtype(file["orbits/outcome"].dtype))
+        assert {"admissible", "inadmissible", "grazing", "resonant", "singular", "not_converged", "failed"} <= known
+        assert "resonance" in words_of(file["special/kind"])
+
+
+@test
+def reasons_are_texts_of_fixed_length_where_there_is_something_to_say(ricochet, folder):
+    for path in shipped(ricochet):
+        with h5py.File(path) as file:
+            assert file["orbits/reason"].dtype.kind == "S"
+            for outcome, reason in zip(words_of(file["orbits/outcome"]), file["orbits/reason"][()]):
+                assert (reason == b"") == (outcome == "admissible"), (path.name, outcome, reason)
+                reason.decode("ascii")
+
+
+@test
+def the_root_says_where_the_result_comes_from(ricochet, folder):
+    text = study(sweep=sweep(3)).replace("kind: orbits\n", "kind: orbits\ntitle: a title\n# a comment\n")
+    path = run(ricochet, folder, text)
+    with h5py.File(path) as file:
+        for name in ("creator_version", "schema_version", "git_sha", "libraries", "compiler", "file_time"):
+            assert name in file.attrs, name
+        assert file.attrs["creator"] == b"ricochet"
+        assert file.attrs["study"].decode() == text
+        assert file.attrs["title"] == b"a title"
+        for name in ("ranks", "host", "compute_seconds", "total_seconds", "tasks_computed", "tasks_resumed"):
+            assert name in file["run"].attrs, name
+
+
+@test
+def the_command_is_recorded_as_typed(ricochet, folder):
+    write(folder, "s.yaml", study(sweep=sweep(3)))
+    ricochet("run", "s.yaml", "--set", "model.gamma=0.2", "--progress", "never", cwd=folder).expect_done()
+    with h5py.File(folder / "s.h5") as file:
+        assert file.attrs["command"].decode() == "ricochet run s.yaml --set model.gamma=0.2 --progress never"
+
+
+@test
+def long_studies_fit_in_the_study_attribute(ricochet, folder):
+    text = study(sweep=sweep(3)) + "# a long comment\n" * 20000
+    path = run(ricochet, folder, text)
+    with h5py.File(path) as file:
+        assert file.attrs["study"].decode() == text
+    ricochet("show", path, "--verify", cwd=folder).expect_done()
+
+
+@test
+def only_what_was_asked_for_is_there(ricochet, folder):
+    path = run(ricochet, folder, study(orbit="states: false", sweep=sweep(3)))
+    with h5py.File(path) as file:
+        assert "q" not in file["orbits"] and "v" not in file["orbits"] and "special" not in file
+        assert "impulse" in file["orbits"]
+    assert names(folder) == ["s.h5", "s.yaml"]
+
+
+@test
+def a_study_without_a_sweep_has_one_task(ricochet, folder):
+    path = run(ricochet, folder, study(at_start="[15]"))
+    with h5py.File(path) as file:
+        assert file["orbits/q"].shape == (1, 30)
+    ricochet("show", path, cwd=folder).expect_done()
+    ricochet("show", path, "--csv", cwd=folder).expect_done()
+
+
+@test
+def the_last_sweep_of_a_grid_varies_fastest(ricochet, folder):
+    periods, gammas = [4.5, 4.6], [0.0, 0.05, 0.1]
+    text = study(sweep=f"\n- {{parameter: orbit.period, values: {periods}}}\n- {sweep(3, 0, 0.1)}")
+    path = run(ricochet, folder, text)
+    with h5py.File(path) as file:
+        assert file["sweep"].attrs["grid"].tolist() == [2, 3]
+        assert file["sweep/orbit.period"][()].tolist() == np.repeat(periods, 3).tolist()
+        assert file["sweep/model.gamma"][()].tolist() == gammas * 2
+
+
+@test
+def list_elements_and_logarithmic_ranges_are_swept(ricochet, folder):
+    text = study(particles=3, at_start="[0]").replace("floor: -1", "floor: [-1, -1, -1]")
+    text += "sweep: {parameter: 'model.floor[1]', values: [-1, -0.5, -3]}\n"
+    with h5py.File(run(ricochet, folder, text)) as file:
+        assert file["sweep/model.floor[1]"][()].tolist() == [-1, -0.5, -3]
+        assert len(set(file["orbits/clearance"][()].tolist())) > 1
+    text = study(sweep="{parameter: model.gamma, from: 1e-4, to: 1e-1, points: 4, scale: log}")
+    with h5py.File(run(ricochet, folder, text, name="log")) as file:
+        assert np.allclose(file["sweep/model.gamma"][()], [1e-4, 1e-3, 1e-2, 1e-1], rtol=1e-14, atol=0)
+
+
+# --- CSV ---
+
+
+def matches(text, value):
+    if isinstance(value, (float, np.floating)):
+        return float(text) == value or (np.isnan(value) and np.isnan(float(text)))
+    return text == (value.decode() if isinstance(value, bytes) else str(value))
+
+
+@test
+def csv_holds_exactly_the_values_of_the_file(ricochet, folder):
+    for path in shipped(ricochet):
+        out = ricochet("show", path, "--csv", cwd=folder).expect_done().out
+        rows = list(csv.DictReader(io.StringIO(out)))
+        with h5py.File(path) as file:
+            columns = {name: file["sweep"][name][()] for name in file["sweep"]}
+            columns.update({name: data[()] for name, data in file["orbits"].items() if data.ndim == 1})
+            columns["outcome"] = words_of(file["orbits/outcome"])
+        assert rows[0].keys() == columns.keys(), (path, rows[0].keys())
+        for name, values in columns.items():
+            assert len(values) == len(rows)
+            for row, value in zip(rows, values):
+                assert matches(row[name], value), (path.name, name, row[name], value)
+
+
+@test
+def csv_of_another_group_holds_its_columns(ricochet, folder):
+    path = run(ricochet, folder, study(at_start="[15]", orbit="special_points: true", sweep=sweep(51, 0, 0.25)))
+    rows = list(csv.DictReader(io.StringIO(ricochet("show", path, "--csv=special", cwd=folder).expect_done().out)))
+    with h5py.File(path) as file:
+        assert [row["kind"] for row in rows] == words_of(file["special/kind"])
+        assert [float(row["parameter"]) for row in rows] == file["special/parameter"][()].tolist()
+
+
+# --- the same data, however it is computed ---
+
+
+@test
+def a_task_does_not_depend_on_the_tasks_around_it(ricochet, folder):
+    gammas = np.linspace(0, 1.2, 40)
+    values = "{{parameter: model.gamma, values: {}}}"
+    there = run(ricochet, folder, study(sweep=values.format(gammas.tolist())))
+    back = run(ricochet, folder, study(sweep=values.format(gammas[::-1].tolist())), name="back")
+    alone = run(ricochet, folder, study(sweep=values.format([gammas[17]])), name="alone")
+    with h5py.File(there) as a, h5py.File(back) as b, h5py.File(alone) as c:
+        for name in a["orbits"]:
+            values = a["orbits"][name][()]
+            assert values.tobytes() == b["orbits"][name][()][::-1].tobytes(), name
+            assert values[17].tobytes() == c["orbits"][name][0].tobytes(), name
+
+
+@test
+def the_order_of_the_sweeps_only_transposes_the_grid(ricochet, folder):
+    first, second = sweep(12, 0, 0.6), sweep(9, 3.2, 6.2, "orbit.period")
+    one = run(ricochet, folder, study(at_start="[15]", sweep=f"\n- {first}\n- {second}"))
+    two = run(ricochet, folder, study(at_start="[15]", sweep=f"\n- {second}\n- {first}"), name="two")
+    with h5py.File(one) as a, h5py.File(two) as b:
+        for name in a["orbits"]:
+            x, y = a["orbits"][name][()], b["orbits"][name][()]
+            y = np.swapaxes(y.reshape(9, 12, *y.shape[1:]), 0, 1).reshape(x.shape)
+            assert x.tobytes() == y.tobytes(), name
+
+
+@test
+def the_same_command_gives_the_same_result(ricochet, folder):
+    for name in ("a", "b"):
+        (folder / name).mkdir()
+        run(ricochet, folder / name, study(at_start="[15]", orbit="special_points: true", sweep=sweep(300, 0, 1.2)))
+    assert_same(folder / "a" / "s.h5", folder / "b" / "s.h5")
+
+
+@test
+def assignments_change_the_study_and_are_recorded_in_it(ricochet, folder):
+    words = [w for s in ("model.gamma=0.05", "orbit.period=1.4 pi", "sweep.points=4", "title=x y") for w in ("--set", s)]
+    path = run(ricochet, folder, study(at_start="[15]", sweep=sweep(9, 0, 0.1)), *words)
+    with h5py.File(path) as file:
+        assert file["orbits/energy"].shape == (4,)
+        assert file.attrs["title"] == b"x y"
+        recorded = file.attrs["study"].decode()
+    again = run(ricochet, folder, recorded, name="again")
+    program.assert_same_data(path, again)
+    with h5py.File(path) as a, h5py.File(again) as b:
+        assert a.attrs["study"] == b.attrs["study"] and a.attrs["study_digest"] == b.attrs["study_digest"]
+
+
+@test
+def assignments_equal_the_same_study_written_out(ricochet, folder):
+    by_set = run(ricochet, folder, study(at_start="[15]", gamma=0), "--set", f"sweep={TABLE}", "--set",
+                 "model.ends=free")
+    written = run(ricochet, folder, study(at_start="[15]", gamma=0, ends="free", sweep=TABLE), name="written")
+    program.assert_same_data(by_set, written)
+
+
+# --- values of the n = 30 ring with one impacting particle and T = 3 pi / 2 ---
+
+
+def table(ricochet, folder, **changes):
+    with h5py.File(run(ricochet, folder, study(at_start="[15]", sweep=TABLE, **changes))) as file:
+        return {name: file["orbits"][name][()] for name in file["orbits"]} | {"words": words_of(file["orbits/outcome"])}
+
+
+@test
+def speeds_after_impact_meet_the_table_of_the_source(ricochet, folder):
+    v = table(ricochet, folder)["v"]
+    assert abs(v[0, 15] - 0.823195058650) < 1e-11
+    assert abs(v[2, 15] - 0.178528674603) < 1e-11
+
+
+@test
+def the_energy_meets_its_value(ricochet, folder):
+    assert abs(table(ricochet, folder)["energy"][1] - 1.067138152) < 1e-9
+
+
+@test
+def the_linear_mode_at_seven_thirtysixths_is_grazing(ricochet, folder):
+    orbits = table(ricochet, folder)
+    assert orbits["words"] == ["admissible"] * 3 + ["grazing"]
+    assert orbits["mode"].tolist() == [-1, -1, -1, 15]
+    assert np.allclose(orbits["impulse"][3], 0, atol=1e-13)
+    # every particle turns at its floor or at the opposite point
+    assert np.allclose(np.abs(orbits["q"][3]), 1, atol=1e-12) and np.allclose(orbits["v"][3], 0, atol=1e-12)
+
+
+@test
+def the_impacting_particle_is_at_its_floor_and_leaves_it(ricochet, folder):
+    orbits = table(ricochet, folder)
+    assert np.allclose(orbits["q"][:3, 15], -1, atol=1e-13)
+    assert np.allclose(orbits["v"][:3, 15], orbits["impulse"][:3, 0] / 2, atol=1e-13)
+    assert (orbits["q"][:3, :15] > -1).all()
+
+
+@test
+def impulse_and_dense_agree(ricochet, folder):
+    texts = [
+        study(at_start="[15]", sweep=TABLE, orbit="method: METHOD"),
+        study(at_start="[3, 4]", ends="fixed", orbit="at_half: [9], method: METHOD", sweep=sweep(9, 0, 0.3)),
+        study(7, "free", at_start="[0, 2]", orbit="at_half: [5], method: METHOD", sweep=sweep(9, 0.1, 2)),
+    ]
+    for i, text in enumerate(texts):
+        paths = [run(ricochet, folder, text.replace("METHOD", m), name=f"{m}{i}") for m in ("impulse", "dense")]
+        with h5py.File(paths[0]) as a, h5py.File(paths[1]) as b:
+            assert words_of(a["orbits/outcome"]) == words_of(b["orbits/outcome"]), i
+            regular = [w in ("admissible", "inadmissible") for w in words_of(a["orbits/outcome"])]
+            assert sum(regular) >= 3
+            bound = 1e-12 * np.maximum(1, np.maximum(a["orbits/condition"][()], b["orbits/condition"][()]) / 100)
+            size = np.maximum(1, np.abs(a["orbits/q"][()]).max(axis=1))
+            for name in ("q", "v", "impulse"):
+                off = np.abs(a["orbits"][name][()] - b["orbits"][name][()]).max(axis=1) / size
+                assert (off <= bound)[regular].all(), (i, name, off, bound)
+
+
+@test
+def turning_the_ring_turns_the_orbit(ricochet, folder):
+    one = run(ricochet, folder, study(at_start="[15]", sweep=sweep(5)))
+    other = run(ricochet, folder, study(at_start="[4]", sweep=sweep(5)), name="other")
+    with h5py.File(one) as a, h5py.File(other) as b:
+        for name in ("q", "v"):
+            assert np.allclose(np.roll(a["orbits"][name][()], 4 - 15, axis=1), b["orbits"][name][()], atol=1e-12), name
+        assert np.allclose(a["orbits/energy"][()], b["orbits/energy"][()], rtol=1e-13)
+
+
+if __name__ == "__main__":
+    program.main()
