@@ -7,9 +7,6 @@
 
 static const double pi = 3.14159265358979323846;
 
-/* Per mode. A range with more is a mistake, and would take minutes to list. */
-static const double most_harmonics = 1e6;
-
 /* The list under construction: counts everything, keeps what fits. */
 typedef struct collection {
   double low, high;
@@ -68,9 +65,9 @@ ric_status ric_chain_resonances(const ric_chain *chain, ric_along along, double 
   if (along == RIC_ALONG_GAMMA)
     extreme.gamma = high;
   double harmonics = ric_chain_frequency_max(&extreme) * (along == RIC_ALONG_GAMMA ? period : high) / (2 * pi);
-  if (!(harmonics <= most_harmonics))
+  if (!(harmonics <= RIC_MOST_HARMONICS))
     return ric_fail(error, RIC_ELIMIT, "%.3g oscillations per period, expected at most %.3g", harmonics,
-                    most_harmonics);
+                    (double)RIC_MOST_HARMONICS);
   collection c = {.low = low, .high = high, .list = list, .capacity = capacity};
   for (size_t mode = 0; mode < chain->particles; mode++)
     if (along == RIC_ALONG_GAMMA)

@@ -97,7 +97,7 @@ ric_status motion_run(motion *m, const ric_chain *chain, double period, const bo
   RIC_TRY(advance(m, chain, &backward, visit, user, poll, error));
   if (mismatch) {
     double in_q = largest_difference(forward.q_end, backward.q_end, n);
-    double in_v = largest_difference(forward.v_end, backward.v_end, n);
+    double in_v = largest_difference(forward.v_end, backward.v_end, n) / ric_chain_frequency_max(chain);
     *mismatch = isnan(in_q) || isnan(in_v) ? NAN : fmax(in_q, in_v);
   }
   return RIC_OK;

@@ -31,7 +31,8 @@ ric_status motion_prepare(motion *m, size_t particles, ric_error *error);
 void motion_clear(motion *m);
 
 /** Streams the pieces. @param visit  NULL to look at the mismatch only
- *  @param mismatch  set to the largest difference of the two runs in positions and velocities at T/4; may be NULL
+ *  @param mismatch  set to the largest difference of the two runs at T/4, in positions and in velocities over the
+ *                   largest frequency; may be NULL
  *  @returns RIC_ESTOPPED when the poll callback says so. */
 ric_status motion_run(motion *m, const ric_chain *chain, double period, const boundary_state *state, motion_visit visit,
                       void *user, double *mismatch, ric_poll poll, ric_error *error);

@@ -73,6 +73,7 @@ static void remember(response *r, near_wave wave) {
     return;
   }
   size_t farthest = 0;
+  r->near_dropped++;
   for (size_t i = 1; i < RESPONSE_NEAR; i++)
     if (fabs(r->near[i].distance) > fabs(r->near[farthest].distance))
       farthest = i;
@@ -92,7 +93,7 @@ static void set_apart(response *r) {
 void response_compute(response *r, const ric_chain *chain, double period, int apart) {
   double gamma = image_ring_gamma(chain), n = (double)chain->particles, near = apart ? closeness / n : 0;
   size_t pair[2];
-  r->near_count = 0;
+  r->near_count = r->near_dropped = 0;
   r->scale = 0;
   for (size_t j = 0; j <= image_ring_sites(chain) / 2; j++)
     r->start[j] = r->half[j] = 0;

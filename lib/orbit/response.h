@@ -32,7 +32,7 @@ typedef struct response {
   double *start_kernel, *half_kernel; /* the same between particles, by distance on the image ring */
   double *modal_start, *modal_half;   /* work arrays for modal coefficients */
   near_wave near[RESPONSE_NEAR];
-  size_t near_count;
+  size_t near_count, near_dropped; /* dropped: close to resonance, too, but beyond the room for them */
   double scale; /* mean over the modes of the largest response 1 / (2 omega |sin x|); 1 / (2 omega) for the near ones */
 } response;
 

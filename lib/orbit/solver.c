@@ -64,6 +64,10 @@ static ric_status check_problem(const ric_orbit_solver *s, const ric_chain *chai
   RIC_TRY(ric_chain_check(chain, error));
   if (!(period > 0 && period < INFINITY))
     return ric_fail(error, RIC_EINVAL, "period = %g, expected 0 < period < infinity", period);
+  double turns = ric_chain_frequency_max(chain) * period / 6.283185307179586;
+  if (!(turns <= RIC_MOST_HARMONICS))
+    return ric_fail(error, RIC_ELIMIT, "fastest mode with %.3g oscillations per period, expected at most %d", turns,
+                    RIC_MOST_HARMONICS);
   if (ric_pattern_particles(pattern) != n)
     return ric_fail(error, RIC_EINVAL, "pattern of %zu particles, expected %zu", ric_pattern_particles(pattern), n);
   if (orbit->particles != n || orbit->impacts != m)
@@ -128,12 +132,18 @@ static ric_status solve(ric_orbit_solver *s, const ric_chain *chain, const ric_p
   orbit->condition = solution.condition;
   if (solution.singular && !solution.solvable) {
     verdict_without_state(orbit, RIC_SINGULAR);
-    snprintf(orbit->reason, sizeof orbit->reason, "contact matrix is singular: condition %.3g, limit %.3g",
-             orbit->condition, o->singular_condition);
+    snprintf(orbit->reason, sizeof orbit->reason,
+             "equations are singular and have no solution: condition %.3g, limit %.3g", orbit->condition,
+             o->singular_condition);
     return RIC_OK;
   }
+  if (!dense && s->impulse.response.near_dropped > 0 && solution.singular)
+    return ric_fail(error, RIC_ENUMERIC, "more than %d wave numbers at resonance: condition %.3g", RESPONSE_NEAR,
+                    solution.condition);
   unfold(&s->cell, pattern, &state, orbit);
   orbit->energy = ric_chain_energy(chain, orbit->q, orbit->v);
+  if (!isfinite(orbit->energy))
+    return ric_fail(error, RIC_ENUMERIC, "energy is not finite: the displacements overflow");
   return verdict_find(&s->motion, &s->cell, chain, pattern, &state, solution.singular, o, orbit, error);
 }
 

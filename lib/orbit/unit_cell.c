@@ -69,15 +69,20 @@ static size_t classes_of(const ric_chain *chain, const unsigned char *roles, siz
   return sites;
 }
 
-static bool decoupled(const ric_chain *chain) {
-  return chain->gamma == 0 && !chain->floors;
+/* Number of classes when the particles do not feel one another and a class stands for several of them, else 0. */
+static size_t classes_when_decoupled(const ric_chain *chain, const unsigned char *roles, size_t site_of_role[3],
+                                     ric_role role_of_site[3]) {
+  if (chain->gamma != 0 || chain->floors)
+    return 0;
+  size_t classes = classes_of(chain, roles, site_of_role, role_of_site);
+  return classes < chain->particles ? classes : 0;
 }
 
 size_t unit_cell_sites(const ric_chain *chain, const ric_pattern *pattern) {
   size_t site_of_role[3];
   ric_role role_of_site[3];
-  return decoupled(chain) ? classes_of(chain, pattern_roles(pattern), site_of_role, role_of_site)
-                          : period_of(chain, pattern);
+  size_t classes = classes_when_decoupled(chain, pattern_roles(pattern), site_of_role, role_of_site);
+  return classes > 0 ? classes : period_of(chain, pattern);
 }
 
 ric_role unit_cell_role(const unit_cell *cell, size_t site) {
@@ -120,9 +125,10 @@ ric_status unit_cell_find(unit_cell *cell, const ric_chain *chain, const ric_pat
   size_t n = chain->particles;
   cell->chain = *chain;
   cell->roles = pattern_roles(pattern);
-  cell->by_role = decoupled(chain);
+  size_t classes = classes_when_decoupled(chain, cell->roles, cell->site_of_role, cell->role_of_site);
+  cell->by_role = classes > 0;
   if (cell->by_role) {
-    cell->chain.particles = classes_of(chain, cell->roles, cell->site_of_role, cell->role_of_site);
+    cell->chain.particles = classes;
     cell->chain.ends = RIC_ENDS_FREE;
     return list_contacts(cell, error);
   }

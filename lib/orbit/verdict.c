@@ -55,17 +55,16 @@ static ric_status judge_modes(const unit_cell *whole, const border_mode *modes, 
     *which = resonant_dominant(&whole->chain, modes, count, orbit->q);
     orbit->outcome = RIC_GRAZING;
     snprintf(orbit->reason, sizeof orbit->reason,
-             "mode %zu is at resonance (%u oscillations per period): the impulses vanish, the orbit is a linear mode",
+             "mode %zu is at resonance (harmonic %u): the impulses vanish, the orbit is a linear mode",
              modes[*which].mode, modes[*which].harmonic);
     return RIC_OK;
   }
   RIC_TRY(resonant_free(whole, modes, count, decided, which, error));
   if (*decided) {
     orbit->outcome = RIC_RESONANT;
-    snprintf(
-        orbit->reason, sizeof orbit->reason,
-        "mode %zu is at resonance (%u oscillations per period) and vanishes at the contacts: its amplitude is free",
-        modes[*which].mode, modes[*which].harmonic);
+    snprintf(orbit->reason, sizeof orbit->reason,
+             "mode %zu is at resonance (harmonic %u) and vanishes at the contacts: its amplitude is free",
+             modes[*which].mode, modes[*which].harmonic);
   }
   return RIC_OK;
 }
@@ -187,10 +186,10 @@ ric_status verdict_find(motion *m, const unit_cell *cell, const ric_chain *chain
                     options->poll, error));
   orbit->residual = isnan(mismatch) ? NAN : fmax(mismatch, largest_contact_error(cell, state));
   copy_clearance(&f, orbit);
-  if (!(orbit->residual <= options->residual_tol * fmax(1, f.scale))) {
+  if (!(orbit->residual <= options->residual_tol * f.scale)) {
     orbit->outcome = RIC_FAILED;
     snprintf(orbit->reason, sizeof orbit->reason, "equations violated by %.3g, allowed %.3g", orbit->residual,
-             options->residual_tol * fmax(1, f.scale));
+             options->residual_tol * f.scale);
     return RIC_OK;
   }
   bool decided;
@@ -199,8 +198,7 @@ ric_status verdict_find(motion *m, const unit_cell *cell, const ric_chain *chain
     decided = true;
     orbit->outcome = RIC_RESONANT;
     snprintf(orbit->reason, sizeof orbit->reason,
-             "contact matrix is singular (condition %.3g) and its equations solvable: impulses may be added freely",
-             orbit->condition);
+             "equations are singular (condition %.3g) but solvable: the orbit is one of many", orbit->condition);
   }
   if (!decided)
     return judge_admissibility(m, &f, state, orbit, error);

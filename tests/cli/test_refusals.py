@@ -349,6 +349,14 @@ def folders_that_cannot_be_written_are_refused(ricochet, folder):
 
 
 @test
+def a_study_is_not_overwritten_by_its_own_result(ricochet, folder):
+    text = write(folder, "s.h5", BASE).read_bytes()  # the default output of a study with this name is itself
+    for words in ([], ["--force"], ["--resume"], ["-o", "./s.h5", "--force"]):
+        ricochet.run("s.h5", *words, cwd=folder).expect_refused(USAGE, "s.h5: " if "-o" not in words else "./s.h5: ")
+    assert (folder / "s.h5").read_bytes() == text and names(folder) == ["s.h5"]
+
+
+@test
 def a_folder_as_output_is_refused_before_anything_is_computed(ricochet, folder):
     write(folder, "s.yaml", BASE)
     (folder / "x.h5").mkdir()

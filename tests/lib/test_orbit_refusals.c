@@ -47,6 +47,18 @@ static void periods_that_are_not_positive_and_finite_are_refused(void **state) {
   clear(&f);
 }
 
+/* They would run for years: refused before any work. */
+static void motions_with_too_many_oscillations_are_refused(void **state) {
+  (void)state;
+  fixture f = good_problem();
+  f.s.period = 1e300;
+  expect_refusal(&f, RIC_ELIMIT, "expected at most 1000000");
+  f.s.period = 5;
+  f.s.chain.gamma = 1e300;
+  expect_refusal(&f, RIC_ELIMIT, "expected at most 1000000");
+  clear(&f);
+}
+
 static void chains_that_make_no_sense_are_refused(void **state) {
   (void)state;
   fixture f = good_problem();
@@ -225,6 +237,7 @@ static void every_outcome_has_its_name(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(periods_that_are_not_positive_and_finite_are_refused),
+      cmocka_unit_test(motions_with_too_many_oscillations_are_refused),
       cmocka_unit_test(chains_that_make_no_sense_are_refused),
       cmocka_unit_test(sizes_that_do_not_match_are_refused),
       cmocka_unit_test(impacting_particles_need_a_floor),

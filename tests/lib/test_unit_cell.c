@@ -130,8 +130,29 @@ static void floors_that_repeat_are_reduced(void **state) {
   solved_clear(&dense);
 }
 
+/* Every pattern of up to four particles: where a class of equal particles has one member, nothing is gained or lost. */
+static void uncoupled_chains_of_any_size_equal_the_dense_solution(void **state) {
+  (void)state;
+  const char letters[] = ".sh";
+  for (size_t n = 1, patterns = 3; n <= 4; n++, patterns *= 3)
+    for (size_t code = 1; code < patterns; code++)
+      for (int ends = RIC_ENDS_PERIODIC; ends <= RIC_ENDS_FREE; ends++) {
+        char word[5] = "";
+        for (size_t i = 0, rest = code; i < n; i++, rest /= 3)
+          word[i] = letters[rest % 3];
+        solved impulse = solved_by(RIC_METHOD_IMPULSE, scenario_word(word, 1, (ric_ends)ends, 0, 4.7));
+        solved dense = solved_by(RIC_METHOD_DENSE, scenario_word(word, 1, (ric_ends)ends, 0, 4.7));
+        assert_int_equal(impulse.orbit.outcome, RIC_ADMISSIBLE);
+        assert_int_equal(dense.orbit.outcome, RIC_ADMISSIBLE);
+        assert_true(state_difference(&impulse.orbit, &dense.orbit) <= agreement(&dense));
+        solved_clear(&impulse);
+        solved_clear(&dense);
+      }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(uncoupled_chains_of_any_size_equal_the_dense_solution),
       cmocka_unit_test(periodic_patterns_on_rings_equal_the_dense_solution),
       cmocka_unit_test(mirrored_patterns_on_free_chains_equal_the_dense_solution),
       cmocka_unit_test(patterns_on_fixed_chains_equal_the_dense_solution),

@@ -23,6 +23,11 @@ static bool is_folder(const char *path) {
   return stat(path, &there) == 0 && S_ISDIR(there.st_mode);
 }
 
+static bool is_same_file(const char *a, const char *b) {
+  struct stat x, y;
+  return stat(a, &x) == 0 && stat(b, &y) == 0 && x.st_dev == y.st_dev && x.st_ino == y.st_ino;
+}
+
 int output_name(output *out, const run_options *o, message *why) {
   char stem[4000];
   *out = (output){.lock = NULL};
@@ -31,6 +36,8 @@ int output_name(output *out, const run_options *o, message *why) {
                          : snprintf(out->path, sizeof out->path, "%s.h5", stem);
   if (length <= 0 || length >= 4000)
     return refuse(why, EXIT_USAGE, "-o: a path of %d bytes, expected 1 to 3999", length);
+  if (is_same_file(out->path, o->study_path))
+    return refuse(why, EXIT_USAGE, "%s: is the study itself; use -o for another name", out->path);
   if (is_folder(out->path))
     return refuse(why, EXIT_USAGE, "%s: is a folder, expected the name of a file", out->path);
   snprintf(out->folder, sizeof out->folder, "%s.ckpt", out->path);

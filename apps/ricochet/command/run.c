@@ -138,6 +138,12 @@ static int write_result(run *r, message *why) {
   return result_write(r->output.path, &header, tables, count, still_ours, r, why);
 }
 
+static int poll_stop(void *user) {
+  (void)user;
+  stop_leave_by_signal();
+  return stop_asked() != STOP_NONE;
+}
+
 /* Everything after the tasks: their rows into the result. */
 static int assemble(run *r, message *why) {
   ranks_barrier();
@@ -150,7 +156,7 @@ static int assemble(run *r, message *why) {
                   reasons[r->computed.stopped], (unsigned long long)checkpoint_done(r->checkpoint),
                   (unsigned long long)study_tasks(r->study));
   }
-  code = ranks_agree(r->kind->extra(r->study, &r->extra, why), why);
+  code = ranks_agree(r->kind->extra(r->study, (ric_poll){.call = poll_stop}, &r->extra, why), why);
   if (!code)
     code = write_result(r, why);
   ranks_sum(r->outcomes, 64);
@@ -161,7 +167,7 @@ static int assemble(run *r, message *why) {
 static void print_summary(const run *r) {
   const column *outcome = table_column(&r->plan.rows, r->plan.outcome);
   const char *separator = ":";
-  printf("%llu tasks", (unsigned long long)study_tasks(r->study));
+  printf("%llu task%s", (unsigned long long)study_tasks(r->study), study_tasks(r->study) == 1 ? "" : "s");
   for (size_t i = 0; i < outcome->name_count; i++)
     if (r->outcomes[i] > 0) {
       printf("%s %llu %s", separator, (unsigned long long)r->outcomes[i], outcome->names[i]);

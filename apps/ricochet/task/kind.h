@@ -37,8 +37,8 @@ typedef struct kind {
   /** Fills the row of a task. @returns 0, or -1 when the poll stopped it. */
   int (*evaluate)(worker *w, const table *layout, uint64_t task, unsigned char *row);
   void (*close)(worker **w);
-  /** The study's extra table; a count of 0 and no columns when there is none. */
-  int (*extra)(const study *s, extra_rows *extra, message *why);
+  /** The study's extra table; a count of 0 and no columns when there is none. EXIT_STOPPED when the poll stopped it. */
+  int (*extra)(const study *s, ric_poll poll, extra_rows *extra, message *why);
 } kind;
 
 /** Kind of a study; every kind that the schema accepts is here. */

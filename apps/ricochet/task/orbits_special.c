@@ -1,5 +1,6 @@
 #include "orbits_special.h"
 
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -35,8 +36,8 @@ static range range_of(const study *s, const study_values *v) {
   return r;
 }
 
-static int count_resonances(const chain_model *m, const range *r, size_t *count) {
-  return ric_chain_resonances(&m->chain, r->along, r->period, r->low, r->high, NULL, 0, count, NULL) == RIC_OK;
+static ric_status count_resonances(const chain_model *m, const range *r, size_t *count, ric_error *error) {
+  return ric_chain_resonances(&m->chain, r->along, r->period, r->low, r->high, NULL, 0, count, error);
 }
 
 int orbits_special_plan(const study *s, const study_values *v, message *why) {
@@ -46,11 +47,14 @@ int orbits_special_plan(const study *s, const study_values *v, message *why) {
   if (!value_flag(v, KEY_ORBIT_SPECIAL_POINTS) || chain_model_init(&model, v) != 0)
     return 0;
   range r = range_of(s, v);
-  int listed = count_resonances(&model, &r, &count);
+  ric_error error;
+  ric_status listed = count_resonances(&model, &r, &count, &error);
   chain_model_clear(&model);
-  if (listed && count <= MOST_POINTS)
+  if (listed == RIC_OK && count <= MOST_POINTS)
     return 0;
   study_place(s, KEY_ORBIT_SPECIAL_POINTS, place, sizeof place);
+  if (listed != RIC_OK)
+    return refuse(why, EXIT_USAGE, "%s: %s", place, error.message);
   return refuse(why, EXIT_USAGE, "%s: %zu resonances in the range of the sweep, expected at most %d", place, count,
                 MOST_POINTS);
 }
@@ -82,30 +86,42 @@ static int by_parameter(const void *a, const void *b) {
   return x->mode < y->mode ? -1 : x->mode > y->mode;
 }
 
+/* Both lists: counted when the arrays are NULL, with counts of 0, and written when there is room for them. */
+static ric_status fetch_points(const chain_model *m, const ric_pattern *pattern, ric_orbit_solver *solver,
+                               const range *r, ric_resonance *resonances, size_t *poles, double *singular,
+                               size_t *zeros, ric_error *error) {
+  RIC_TRY(ric_chain_resonances(&m->chain, r->along, r->period, r->low, r->high, resonances, *poles, poles, error));
+  return ric_orbit_singular_points(solver, &m->chain, pattern, r->along, r->period, r->low, r->high, singular, *zeros,
+                                   zeros, error);
+}
+
+static void merge(const ric_resonance *resonances, size_t poles, const double *singular, size_t zeros, special *list) {
+  for (size_t i = 0; i < poles; i++)
+    list[i] = (special){.parameter = resonances[i].parameter,
+                        .mode = (long)resonances[i].mode,
+                        .harmonic = (long)resonances[i].harmonic};
+  for (size_t i = 0; i < zeros; i++)
+    list[poles + i] = (special){.kind = 1, .parameter = singular[i], .mode = -1};
+  qsort(list, poles + zeros, sizeof *list, by_parameter);
+}
+
 /* Both lists merged into [count]; NULL on failure. */
 static special *list_points(const chain_model *m, const ric_pattern *pattern, ric_orbit_solver *solver, const range *r,
                             size_t *count, ric_error *error) {
   size_t poles = 0, zeros = 0;
-  ric_resonance *resonances = NULL;
-  double *singular = NULL;
-  special *list = NULL;
-  if (!count_resonances(m, r, &poles) || ric_orbit_singular_points(solver, &m->chain, pattern, r->along, r->period,
-                                                                   r->low, r->high, NULL, 0, &zeros, error) != RIC_OK)
+  if (fetch_points(m, pattern, solver, r, NULL, &poles, NULL, &zeros, error) != RIC_OK)
     return NULL;
-  resonances = calloc(poles + 1, sizeof *resonances);
-  singular = calloc(zeros + 1, sizeof *singular);
-  if (resonances && singular && (list = calloc(poles + zeros + 1, sizeof *list))) {
-    ric_chain_resonances(&m->chain, r->along, r->period, r->low, r->high, resonances, poles, &poles, error);
-    ric_orbit_singular_points(solver, &m->chain, pattern, r->along, r->period, r->low, r->high, singular, zeros, &zeros,
-                              error);
-    for (size_t i = 0; i < poles; i++)
-      list[i] = (special){.parameter = resonances[i].parameter,
-                          .mode = (long)resonances[i].mode,
-                          .harmonic = (long)resonances[i].harmonic};
-    for (size_t i = 0; i < zeros; i++)
-      list[poles + i] = (special){.kind = 1, .parameter = singular[i], .mode = -1};
+  ric_resonance *resonances = calloc(poles + 1, sizeof *resonances);
+  double *singular = calloc(zeros + 1, sizeof *singular);
+  special *list = calloc(poles + zeros + 1, sizeof *list);
+  bool fetched = resonances && singular && list &&
+                 fetch_points(m, pattern, solver, r, resonances, &poles, singular, &zeros, error) == RIC_OK;
+  if (fetched) {
     *count = poles + zeros;
-    qsort(list, *count, sizeof *list, by_parameter);
+    merge(resonances, poles, singular, zeros, list);
+  } else {
+    free(list);
+    list = NULL;
   }
   free(resonances);
   free(singular);
@@ -172,7 +188,7 @@ static int fill(extra_rows *extra, const special *list, size_t count) {
   return 0;
 }
 
-int orbits_special(const study *s, extra_rows *extra, message *why) {
+int orbits_special(const study *s, ric_poll poll, extra_rows *extra, message *why) {
   *extra = (extra_rows){0};
   ric_error error = {.message = "out of memory"};
   chain_model model = {0};
@@ -181,13 +197,15 @@ int orbits_special(const study *s, extra_rows *extra, message *why) {
   special *list = NULL;
   size_t count = 0;
   int done = 0;
+  ric_orbit_options options = ric_orbit_options_default();
+  options.poll = poll;
   study_values *v = study_values_create(s);
   if (v && !value_flag(v, KEY_ORBIT_SPECIAL_POINTS)) {
     study_values_destroy(&v);
     return 0;
   }
   if (v && chain_model_init(&model, v) == 0 && chain_model_pattern(v, &pattern, &error) == RIC_OK &&
-      ric_orbit_solver_create(NULL, &solver, &error) == RIC_OK) {
+      ric_orbit_solver_create(&options, &solver, &error) == RIC_OK) {
     range r = range_of(s, v);
     lay_out(&extra->layout);
     list = list_points(&model, pattern, solver, &r, &count, &error);
@@ -198,5 +216,7 @@ int orbits_special(const study *s, extra_rows *extra, message *why) {
   ric_pattern_destroy(&pattern);
   chain_model_clear(&model);
   study_values_destroy(&v);
-  return done ? 0 : refuse(why, EXIT_RUN, "%s: special points: %s", study_name(s), error.message);
+  return done ? 0
+              : refuse(why, error.status == RIC_ESTOPPED ? EXIT_STOPPED : EXIT_RUN, "%s: special points: %s",
+                       study_name(s), error.message);
 }

@@ -11,6 +11,6 @@ extern const char *const orbit_outcome_names[RIC_OUTCOME_COUNT];
 int orbits_special_plan(const study *s, const study_values *v, message *why);
 
 /** The list, ordered by parameter; empty unless the study asks for it. */
-int orbits_special(const study *s, extra_rows *extra, message *why);
+int orbits_special(const study *s, ric_poll poll, extra_rows *extra, message *why);
 
 #endif

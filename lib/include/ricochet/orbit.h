@@ -16,11 +16,11 @@
  * Outcomes (they are results, not errors):
  *   admissible   impulses positive, every gap positive between impacts (9), certified on the whole period
  *   inadmissible a solution of the equations that violates one of the two; the reason says which first, where and when
- *   grazing      an impulse or a gap vanishes within grazing_tol; in particular a mode that the pattern excites is at
- *                resonance: the impulses are zero and the orbit is a linear mode that touches the floor
+ *   grazing      an impulse or a gap vanishes within grazing_tol; in particular modes at resonance satisfy the contact
+ *                conditions alone: the impulses are zero and the orbit is a linear mode that touches the floor
  *   resonant     the orbit exists and is not unique: a mode at resonance vanishes at every contact and its amplitude is
- *                free (0 in the orbit given), or the contact matrix is singular though its equations are solvable
- *                (the orbit given has the smallest impulses)
+ *                free (0 in the orbit given), or the equations are singular though solvable (the orbit given is the
+ *                smallest solution)
  *   singular     the contact matrix is singular: no orbit, amplitudes blow up nearby; states are NaN
  *   not_converged, failed  no result, with the reason */
 #ifndef RICOCHET_ORBIT_H
@@ -80,7 +80,8 @@ typedef struct ric_orbit {
   double *q_half, *v_half; /* [n] state at t = (T/2)-, before the impacts there */
   double *impulse;         /* [m] velocity jumps, in the order of the pattern */
   double energy;           /* total, constant along the orbit */
-  double residual;         /* largest violation of the contact conditions, and of the motion joining both states */
+  double residual;         /* largest violation of the contact conditions, and of the motion joining both states
+                              (there, velocities over the largest frequency) */
   double clearance;      /* smallest gap of the free particles that have a floor, over the whole period; NaN if none */
   double clearance_time; /* when, in [0, T/2]; NaN */
   long long clearance_particle; /* which; -1 */
@@ -98,7 +99,9 @@ RIC_API void ric_orbit_clear(ric_orbit *orbit);
 RIC_API void ric_orbit_fail(ric_orbit *orbit, const char *reason);
 
 /** Workspace of the solvers and of everything that follows an orbit in time. Grows to what a problem needs; solving
- * again with the same numbers of particles, ends and impacts allocates nothing. Not to be shared between threads. */
+ * again by impulse response with the same numbers of particles, ends and impacts allocates nothing away from resonances
+ * and singular points (FFTW takes buffers of its own inside the transforms of chains with ends and of sizes with large
+ * prime factors). Not to be shared between threads. */
 typedef struct ric_orbit_solver ric_orbit_solver;
 
 /** @param options  copied, NULL for the defaults; checked here */
@@ -112,7 +115,9 @@ RIC_API double ric_orbit_bytes(const ric_chain *chain, const ric_pattern *patter
 /** The orbit of a pattern at a period.
  *  @param orbit  initialised for the chain's particles and the pattern's impacts
  *  @returns RIC_EINVAL for bad arguments, among them an impacting particle without a floor and a period <= 0;
- *           RIC_ELIMIT for the dense method beyond RIC_DENSE_PARTICLES; RIC_ESTOPPED. Everything else is an outcome.
+ *           RIC_ELIMIT for the dense method beyond RIC_DENSE_PARTICLES, and for a fastest mode with more than
+ *           RIC_MOST_HARMONICS oscillations per period; RIC_ENUMERIC when displacements overflow or more than 32 wave
+ *           numbers are at resonance together; RIC_ESTOPPED. Everything else is an outcome.
  *           The orbit of a call that returns an error is `failed`, with the error's message as its reason.
  *  Source: [JAP] (7)-(11). */
 RIC_API ric_status ric_orbit_solve(ric_orbit_solver *solver, const ric_chain *chain, const ric_pattern *pattern,

@@ -9,6 +9,8 @@
 
 #include "chain.h"
 
+enum { RIC_MOST_HARMONICS = 1000000 /* oscillations per period beyond which nothing is computed */ };
+
 /** The parameter that varies. */
 typedef enum ric_along { RIC_ALONG_GAMMA, RIC_ALONG_PERIOD } ric_along;
 
@@ -27,7 +29,7 @@ typedef struct ric_resonance {
  *  @param count  set to the number of resonances in the range, also when it exceeds the capacity; then the list holds
  *                some `capacity` of them, to be asked for again with enough room
  *  @returns RIC_EINVAL for a range that is not 0 <= low <= high < infinity or a period that is not positive; RIC_ELIMIT
- *           for a range that reaches 10^6 oscillations per period. */
+ *           for a range that reaches beyond RIC_MOST_HARMONICS oscillations per period. */
 RIC_API ric_status ric_chain_resonances(const ric_chain *chain, ric_along along, double period, double low, double high,
                                         ric_resonance *list, size_t capacity, size_t *count, ric_error *error);
 
