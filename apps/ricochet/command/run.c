@@ -249,9 +249,9 @@ int command_run(int argc, char **argv) {
   if (!code)
     code = run_study(&r, &why);
   int speaks = ranks_rank() == 0;
-  ranks_finish();
   if (code && speaks)
-    complain(code, &why);
+    complain(code, &why); /* before a rank leaves with its code: mpirun then ends the others at once */
+  ranks_finish();
   study_destroy(&r.study);
   free(r.extra.rows);
   free(r.command);
