@@ -6,9 +6,12 @@
 
 /** What one repeat of a scenario did. */
 typedef struct work_done {
-  size_t tasks; /* orbits */
-  size_t n;     /* particles of each */
-  int failed;   /* an orbit was not what the scenario promises */
+  size_t tasks;        /* orbits */
+  size_t n;            /* particles of each */
+  int failed;          /* something was not what the scenario promises */
+  double seconds;      /* of the part that counts; 0: of all of it */
+  const char *measure; /* name of a figure besides time, NULL: none */
+  double value;
 } work_done;
 
 typedef struct benchmark {
@@ -20,8 +23,8 @@ typedef struct benchmark {
   work_done (*run)(size_t argument, int variant);
 } benchmark;
 
-/** Ends with a NULL name. */
-extern const benchmark benchmarks[];
+/** Lists that end with a NULL name: orbits, and trajectories. */
+extern const benchmark benchmarks[], trajectory_benchmarks[];
 
 /** Seconds on the monotonic clock. */
 double bench_seconds(void);

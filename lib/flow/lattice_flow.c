@@ -1,72 +1,156 @@
-#include "ricochet/lattice_flow.h"
-
+/* The Taylor flow of lattices: its life, its pieces and its states. */
+#include <math.h>
+#include <stdint.h>
 #include <stdlib.h>
 
-#include "model/image_ring.h"
+#include "lattice_flow_parts.h"
+#include "model/lattice_force.h"
+#include "model/lattice_system.h"
 
-enum {
-  HALO = RIC_LATTICE_ORDER / 2,         /* neighbours read beyond each end of a block */
-  WIDTH = RIC_LATTICE_BLOCK + 2 * HALO, /* columns of the coefficient array */
-  LEVELS = RIC_LATTICE_ORDER + 1
-};
-
-struct ric_lattice_flow {
-  double coef[LEVELS][WIDTH];
-};
-
-double ric_lattice_step(const ric_chain *chain) {
-  return 2.2 / ric_chain_frequency_max(chain);
+static lattice_flow *self(ric_flow *flow) {
+  return (lattice_flow *)(void *)flow;
 }
 
-ric_status ric_lattice_flow_create(ric_lattice_flow **flow, ric_error *error) {
-  *flow = calloc(1, sizeof **flow);
-  return *flow ? RIC_OK
-               : ric_fail(error, RIC_ENOMEM, "no memory for the Taylor coefficients (%zu bytes)", sizeof **flow);
+static ric_status start(ric_flow *flow, ric_error *error) {
+  (void)error;
+  lattice_flow *f = self(flow);
+  f->made = SIZE_MAX;
+  f->ended = 0;
+  lattice_flow_list_contacts(f);
+  return RIC_OK;
 }
 
-void ric_lattice_flow_destroy(ric_lattice_flow **flow) {
-  if (!flow)
-    return;
-  free(*flow);
-  *flow = NULL;
+static ric_status step(ric_flow *flow, double stop, ric_error *error) {
+  lattice_flow *f = self(flow);
+  f->made = SIZE_MAX;
+  f->ended = 0;
+  flow->counts.force_evaluations++;
+  return lattice_flow_choose_step(f, stop, error);
 }
 
-/* Row [width] of a block and its halo, scaled, from a function on the chain and its images. */
-static void load(const ric_chain *chain, const double *x, double scale, ptrdiff_t begin, size_t width, double *row) {
-  ptrdiff_t n = (ptrdiff_t)chain->particles, end = begin + (ptrdiff_t)width;
-  ptrdiff_t inner = begin > 0 ? begin : 0, outer = end < n ? end : n;
-  for (ptrdiff_t i = begin; i < inner; i++)
-    row[i - begin] = scale * image_ring_value(chain, x, i);
-  for (ptrdiff_t i = inner; i < outer; i++)
-    row[i - begin] = scale * x[i];
-  for (ptrdiff_t i = outer; i < end; i++)
-    row[i - begin] = scale * image_ring_value(chain, x, i);
-}
-
-/* One step of the recurrence on the columns [low, high). */
-static void raise_order(const double *restrict c, double *restrict next, size_t low, size_t high, double own,
-                        double neighbour) {
-  for (size_t i = low; i < high; i++)
-    next[i] = own * c[i] + neighbour * (c[i - 1] + c[i + 1]);
-}
-
-ric_segment ric_lattice_flow_segment(ric_lattice_flow *flow, const ric_chain *chain, const double *q, const double *v,
-                                     double start, double length, size_t first, size_t count) {
-  double gamma = image_ring_gamma(chain);
-  size_t width = count + 2 * HALO;
-  ptrdiff_t begin = (ptrdiff_t)first - HALO;
-  load(chain, q, 1, begin, width, flow->coef[0]);
-  load(chain, v, length, begin, width, flow->coef[1]);
-  for (size_t j = 0; j + 2 < LEVELS; j++) {
-    double scale = length * length / (double)((j + 1) * (j + 2)); /* [JAP] (1) in Taylor coefficients */
-    size_t lost = j / 2 + 1;                                      /* a ring of the halo per two orders */
-    raise_order(flow->coef[j], flow->coef[j + 2], lost, width - lost, -scale * (1 + 2 * gamma), scale * gamma);
+ric_segment lattice_flow_make(lattice_flow *f, size_t index, double length) {
+  size_t first = index * f->block, rest = f->base.system->coordinates - first;
+  ric_segment s = lattice_series_segment(f->series, f->base.q, f->base.u, f->base.time, length, first,
+                                         rest < f->block ? rest : f->block);
+  f->made = index;
+  if (f->base.pieces > 1 && f->ended == index) { /* while it is in the cache: most steps are accepted whole */
+    ric_segment_state(&s, 1, f->q_next + first, f->u_next + first);
+    f->ended++;
   }
-  return (ric_segment){.first = first,
-                       .coordinates = count,
-                       .stride = WIDTH,
-                       .degree = RIC_LATTICE_ORDER,
-                       .start = start,
-                       .length = length,
-                       .coef = &flow->coef[0][HALO]};
+  return s;
+}
+
+static ric_segment piece(ric_flow *flow, size_t index) {
+  lattice_flow *f = self(flow);
+  return f->made == index ? lattice_series_last(f->series) : lattice_flow_make(f, index, flow->length);
+}
+
+static void swap(double **a, double **b) {
+  double *c = *a;
+  *a = *b;
+  *b = c;
+}
+
+static void accept(ric_flow *flow, double x) {
+  lattice_flow *f = self(flow);
+  for (size_t i = x == 1 ? f->ended : 0; i < flow->pieces; i++) {
+    ric_segment s = piece(flow, i);
+    ric_segment_state(&s, x, f->q_next + s.first, f->u_next + s.first);
+  }
+  swap(&flow->q, &f->q_next);
+  swap(&flow->u, &f->u_next);
+  f->made = SIZE_MAX;
+  f->ended = 0;
+}
+
+static void destroy(ric_flow *flow) {
+  lattice_flow *f = self(flow);
+  lattice_series_destroy(&f->series);
+  lattice_series_destroy(&f->aside);
+  free(f->q_next);
+  free(f->u_next);
+  free(f->held);
+  free(f->pressed);
+  flow_clear(flow);
+  free(f);
+}
+
+static const flow_method method = {.start = start,
+                                   .step = step,
+                                   .piece = piece,
+                                   .accept = accept,
+                                   .reaction = lattice_flow_reaction,
+                                   .destroy = destroy};
+
+static size_t compliant_obstacles(const ric_system *system) {
+  size_t count = 0;
+  for (size_t j = 0; j < system->obstacle_count; j++)
+    count += isfinite(system->obstacles[j].stiffness) != 0;
+  return count;
+}
+
+static ric_status allocate(lattice_flow *f, ric_error *error) {
+  size_t n = f->base.system->coordinates, obstacles = f->base.system->obstacle_count;
+  size_t compliant = compliant_obstacles(f->base.system);
+  f->q_next = malloc(n * sizeof *f->q_next);
+  f->u_next = malloc(n * sizeof *f->u_next);
+  f->held = calloc(obstacles + 1, sizeof *f->held);
+  f->pressed = calloc(2 * compliant + 1, sizeof *f->pressed);
+  if (!f->q_next || !f->u_next || !f->held || !f->pressed)
+    return ric_fail(error, RIC_ENOMEM, "no memory for a flow of %zu coordinates", n);
+  f->acting = f->pressed + compliant;
+  RIC_TRY(lattice_series_create(f->lattice, f->order, f->block, &f->series, error));
+  if (f->base.pieces > 1 && obstacles > 0)
+    RIC_TRY(lattice_series_create(f->lattice, f->order, 3, &f->aside, error));
+  return RIC_OK;
+}
+
+static bool spring_is_linear(const ric_spring *s) {
+  return s->quadratic == 0 && s->cubic == 0;
+}
+
+static bool lattice_is_linear(const ric_lattice *l) {
+  bool linear = true;
+  for (size_t i = 0; i < (l->on_sites ? l->particles : 1); i++)
+    linear &= spring_is_linear(l->on_sites ? &l->on_sites[i] : &l->on_site);
+  for (size_t i = 0; i < (l->links ? l->particles + 1 : 1); i++)
+    linear &= spring_is_linear(l->links ? &l->links[i] : &l->link);
+  return linear;
+}
+
+/* Order, step and blocks. */
+static void plan(lattice_flow *f, const ric_flow_options *o) {
+  const ric_lattice *l = f->lattice;
+  size_t n = l->particles, pieces = (n + LATTICE_SERIES_BLOCK - 1) / LATTICE_SERIES_BLOCK;
+  bool forced = l->force_cos || l->force_sin;
+  f->order = o->order ? o->order : lattice_flow_order(o->tolerance);
+  double reach = lattice_flow_reach(o->tolerance, f->order);
+  f->linear = lattice_is_linear(l);
+  f->longest = reach / lattice_rate_bound(l);
+  f->longest_forced = forced ? reach / fabs(l->frequency) : INFINITY;
+  f->trial = lattice_flow_first_trial(f);
+  f->block = (n + pieces - 1) / pieces;
+  f->base.pieces = (n + f->block - 1) / f->block;
+}
+
+ric_status lattice_flow_create(const ric_system *system, const ric_flow_options *options, ric_flow **flow,
+                               ric_error *error) {
+  lattice_flow *f = calloc(1, sizeof *f);
+  if (!f)
+    return ric_fail(error, RIC_ENOMEM, "no memory for a flow");
+  ric_status status = flow_init(&f->base, &method, system, options, error);
+  if (status != RIC_OK) {
+    free(f);
+    return status;
+  }
+  f->lattice = lattice_system_lattice(system);
+  f->made = SIZE_MAX;
+  f->contacts_changed = f->aside_stale = true;
+  plan(f, options);
+  status = allocate(f, error);
+  if (status != RIC_OK)
+    destroy(&f->base);
+  else
+    *flow = &f->base;
+  return status;
 }

@@ -3,7 +3,11 @@
 #include <math.h>
 #include <stddef.h>
 
-enum { SIZE = RIC_POLY_DEGREE + 1, DEPTH = 52 /* halvings of [0, 1] that doubles resolve */ };
+enum {
+  SIZE = RIC_POLY_DEGREE + 1,
+  DEPTH = 52,     /* halvings of [0, 1] that doubles resolve */
+  LOW_POWERS = 10 /* those that matter most in the segments of flows */
+};
 
 double ric_poly_value(const double *c, int degree, double x, double *slope) {
   double value = c[degree], derivative = 0;
@@ -19,7 +23,7 @@ double ric_poly_value(const double *c, int degree, double x, double *slope) {
 double ric_poly_lower_bound(const double *c, int degree) {
   double bound = c[0];
   for (int j = 1; j <= degree; j++)
-    bound += fmin(c[j], 0);
+    bound += (c[j] < 0 ? c[j] : 0);
   return bound;
 }
 
@@ -68,7 +72,7 @@ static void halve(piece *p, piece *left, int degree) {
 static double smallest(const double *b, int degree) {
   double least = b[0];
   for (int j = 1; j <= degree; j++)
-    least = fmin(least, b[j]);
+    least = b[j] < least ? b[j] : least;
   return least;
 }
 
@@ -112,6 +116,35 @@ static double bracketed_root(const double *c, int degree, int order, double low,
   return x;
 }
 
+static const double bound_rounding = 2e-15; /* of those bounds, relative to the sum of the coefficients' sizes */
+
+/* Bernstein form of degree LOW_POWERS of the powers up to it; fixed bounds let the compiler keep it in registers. */
+static double smallest_of_low_powers(const double *c, int degree) {
+  static const double inverse_binomial[LOW_POWERS + 1] = {1.,       1. / 10,  1. / 45, 1. / 120, 1. / 210, 1. / 252,
+                                                          1. / 210, 1. / 120, 1. / 45, 1. / 10,  1.};
+  double b[LOW_POWERS + 1];
+  for (int j = 0; j <= LOW_POWERS; j++)
+    b[j] = j <= degree ? c[j] * inverse_binomial[j] : 0;
+  for (int r = 0; r < LOW_POWERS; r++)
+    for (int j = LOW_POWERS; j > r; j--)
+      b[j] += b[j - 1];
+  return smallest(b, LOW_POWERS);
+}
+
+/* Whether the polynomial is above a value on all of [0, 1], as far as cheap bounds can say: the coefficients, then the
+ * Bernstein form of the low powers with the negative high ones taken off whole, a tenth of the cost of the full form.
+ */
+static int lies_above(const double *c, int degree, double value) {
+  double rest = 0, size = 0;
+  if (ric_poly_lower_bound(c, degree) > value)
+    return 1;
+  for (int j = 0; j <= degree; j++)
+    size += fabs(c[j]);
+  for (int j = LOW_POWERS + 1; j <= degree; j++)
+    rest += c[j] < 0 ? c[j] : 0;
+  return smallest_of_low_powers(c, degree) + rest - bound_rounding * size > value;
+}
+
 static void improve(double *best, double *best_at, double value, double at) {
   if (value < *best) {
     *best = value;
@@ -120,7 +153,7 @@ static void improve(double *best, double *best_at, double value, double at) {
 }
 
 int ric_poly_minimum(const double *c, int degree, double cutoff, double tolerance, double *at, double *value) {
-  if (ric_poly_lower_bound(c, degree) > cutoff)
+  if (lies_above(c, degree, cutoff))
     return 0;
   piece stack[DEPTH + 1];
   double best = INFINITY, best_at = 0;
@@ -150,7 +183,37 @@ int ric_poly_minimum(const double *c, int degree, double cutoff, double toleranc
   return 1;
 }
 
+int ric_poly_first_minimum(const double *c, int degree, double cutoff, double *at, double *value) {
+  if (lies_above(c, degree, cutoff))
+    return 0;
+  piece stack[DEPTH + 1];
+  int depth = 1, before = 0; /* sign of the slope at the end of the pieces done */
+  stack[0].start = 0, stack[0].width = 1;
+  ric_poly_bernstein(c, degree, stack[0].b);
+  while (depth > 0) {
+    piece *p = &stack[--depth];
+    int first, changes = sign_changes(p->b, degree, 1, &first), inside = changes == 1 && first < 0;
+    int low = smallest(p->b, degree) <= cutoff, between = before < 0 && first > 0;
+    if (low && changes > 1 && depth < DEPTH) {
+      halve(p, p + 1, degree); /* the first half lands on top and is looked at first */
+      depth += 2;
+      continue;
+    }
+    if (low && (inside || between)) {
+      *at = between ? p->start : bracketed_root(c, degree, 1, p->start, p->start + p->width);
+      *value = ric_poly_value(c, degree, *at, NULL);
+      if (*value <= cutoff)
+        return 1;
+    }
+    if (first != 0)
+      before = changes % 2 ? -first : first;
+  }
+  return 0;
+}
+
 int ric_poly_first_root(const double *c, int degree, double *at) {
+  if (lies_above(c, degree, 0))
+    return 0;
   piece stack[DEPTH + 1];
   int depth = 1;
   stack[0].start = 0, stack[0].width = 1;

@@ -40,8 +40,8 @@ static void look(const search *s, const motion_piece *piece, size_t i) {
 
 static void search_piece(const motion_piece *piece, void *user) {
   const search *s = user;
-  double lower[RIC_LATTICE_BLOCK];
-  ric_segment_lower_bounds(&piece->segment, lower);
+  double lower[LATTICE_SERIES_BLOCK];
+  ric_segment_bounds(&piece->segment, lower, NULL);
   for (size_t i = 0; i < piece->segment.coordinates; i++) {
     size_t site = piece->segment.first + i;
     double gap = lower[i] - ric_chain_floor(&s->cell->chain, site); /* infinite without a floor */

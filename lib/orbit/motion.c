@@ -3,9 +3,17 @@
 #include <math.h>
 #include <stdlib.h>
 
+enum { ORDER = 24 };
+
+/* Longest step whose truncation error, (omega h)^25 / 25! relative to the amplitude, is below 1e-16. */
+static double longest_step(const ric_chain *chain) {
+  return 2.2 / ric_chain_frequency_max(chain);
+}
+
 ric_status motion_prepare(motion *m, size_t particles, ric_error *error) {
-  if (!m->flow)
-    RIC_TRY(ric_lattice_flow_create(&m->flow, error));
+  ric_lattice linear = ric_lattice_default(particles, RIC_ENDS_PERIODIC);
+  if (!m->series)
+    RIC_TRY(lattice_series_create(&linear, ORDER, LATTICE_SERIES_BLOCK, &m->series, error));
   if (particles <= m->capacity)
     return RIC_OK;
   free(m->store);
@@ -18,7 +26,7 @@ ric_status motion_prepare(motion *m, size_t particles, ric_error *error) {
 }
 
 void motion_clear(motion *m) {
-  ric_lattice_flow_destroy(&m->flow);
+  lattice_series_destroy(&m->series);
   free(m->store);
   *m = (motion){0};
 }
@@ -37,10 +45,10 @@ typedef struct run {
 static void step(motion *m, const ric_chain *chain, const run *r, size_t index, const double *q, const double *v,
                  double *q_next, double *v_next, motion_visit visit, void *user) {
   double start = r->start + (double)index * r->length;
-  for (size_t first = 0; first < chain->particles; first += RIC_LATTICE_BLOCK) {
-    size_t rest = chain->particles - first, count = rest < RIC_LATTICE_BLOCK ? rest : RIC_LATTICE_BLOCK;
+  for (size_t first = 0; first < chain->particles; first += LATTICE_SERIES_BLOCK) {
+    size_t rest = chain->particles - first, count = rest < LATTICE_SERIES_BLOCK ? rest : LATTICE_SERIES_BLOCK;
     motion_piece piece = {.from_half = r->from_half, .at_contact = index == 0};
-    piece.segment = ric_lattice_flow_segment(m->flow, chain, q, v, start, r->length, first, count);
+    piece.segment = lattice_series_segment(m->series, q, v, start, r->length, first, count);
     if (visit)
       visit(&piece, user);
     ric_segment_state(&piece.segment, 1, q_next + first, v_next + first);
@@ -75,7 +83,7 @@ ric_status motion_run(motion *m, const ric_chain *chain, double period, const bo
                       void *user, double *mismatch, ric_poll poll, ric_error *error) {
   size_t n = chain->particles;
   double quarter = period / 4, *store = m->store;
-  size_t steps = (size_t)ceil(quarter / ric_lattice_step(chain));
+  size_t steps = (size_t)ceil(quarter / longest_step(chain));
   run forward = {.start = 0,
                  .length = quarter / (double)steps,
                  .steps = steps,
@@ -93,6 +101,8 @@ ric_status motion_run(motion *m, const ric_chain *chain, double period, const bo
   backward.v = state->v_half;
   backward.q_end = store + 4 * n;
   backward.v_end = store + 5 * n;
+  m->lattice = ric_lattice_of_chain(chain);
+  RIC_TRY(lattice_series_begin(m->series, &m->lattice, NULL, error));
   RIC_TRY(advance(m, chain, &forward, visit, user, poll, error));
   RIC_TRY(advance(m, chain, &backward, visit, user, poll, error));
   if (mismatch) {

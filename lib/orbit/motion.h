@@ -9,7 +9,7 @@
 #include <stdbool.h>
 
 #include "boundary_state.h"
-#include "ricochet/lattice_flow.h"
+#include "flow/lattice_series.h"
 
 /** One block of particles over one step. */
 typedef struct motion_piece {
@@ -22,7 +22,8 @@ typedef struct motion_piece {
 typedef void (*motion_visit)(const motion_piece *piece, void *user);
 
 typedef struct motion {
-  ric_lattice_flow *flow;
+  lattice_series *series;
+  ric_lattice lattice; /* that of the chain of the run */
   size_t capacity;
   double *store; /* [6][capacity]: two states to step between, one to compare with */
 } motion;

@@ -32,7 +32,7 @@ static const double slack = 1e-9;
 static void write_requests(const motion_piece *piece, void *user) {
   const request *r = user;
   const ric_segment *s = &piece->segment;
-  double q[RIC_LATTICE_BLOCK], v[RIC_LATTICE_BLOCK];
+  double q[LATTICE_SERIES_BLOCK], v[LATTICE_SERIES_BLOCK];
   for (size_t a = 0; a < r->count; a++) {
     double sign, t = fold(r->orbit, r->times[a], &sign), x = (t - s->start) / s->length;
     bool in_this_run = (4 * t > r->orbit->period) == piece->from_half;

@@ -33,7 +33,7 @@ def no_command_shows_the_usage(ricochet, folder):
 @test
 def version_names_its_libraries(ricochet, folder):
     out = ricochet("--version", cwd=folder).expect(DONE).out
-    for name in ("ricochet ", "GSL ", "FFTW ", "HDF5 ", "MPI ", "libyaml "):
+    for name in ("ricochet ", "GSL ", "FFTW ", "SUNDIALS ", "HDF5 ", "MPI ", "libyaml "):
         assert name in out, (name, out)
 
 

@@ -9,9 +9,10 @@ import sys
 
 ROOMS = ["model", "flow", "impact", "orbit", "branch", "grazing", "attractor"]
 PUBLIC = {  # public headers by room
-    "model": {"chain", "resonance"},
-    "flow": {"polynomial", "segment", "lattice_flow"},
-    "orbit": {"pattern", "orbit"},
+    "model": {"chain", "resonance", "obstacle", "lattice", "mck", "user_system", "system"},
+    "flow": {"polynomial", "segment", "flow"},
+    "impact": {"event", "trajectory"},
+    "orbit": {"pattern", "orbit", "verify"},
 }
 BASE = {"status", "export", "version"}
 UMBRELLA = "ricochet.h"

@@ -142,6 +142,41 @@ static void solving_again_on_a_unit_cell_allocates_nothing(void **state) {
   assert_int_equal(allocations_of_repeats(scenario_word(".s.", 10, RIC_ENDS_FREE, 0.1, 5)), 0);
 }
 
+static int pull(double t, const double *q, const double *u, double *f, void *user) {
+  (void)t, (void)u, (void)user;
+  f[0] = -q[0];
+  return 0;
+}
+
+static int height(double t, const double *q, size_t obstacle, double *h, void *user) {
+  (void)t, (void)obstacle, (void)user;
+  *h = q[0] + 2;
+  return 0;
+}
+
+static void moving_a_user_system_allocates_nothing(void **state) {
+  (void)state;
+  const ric_mechanical model = {.coordinates = 1, .speeds = 1, .obstacles = 1, .force = pull, .gap = height};
+  const double q = 1, u = 0;
+  ric_system *system = NULL;
+  ric_flow *flow = NULL;
+  assert_int_equal(ric_system_create_mechanical(&model, &system, NULL), RIC_OK);
+  assert_int_equal(ric_flow_create(system, NULL, &flow, NULL), RIC_OK);
+  size_t before = allocations;
+  for (int k = 0; k < 5; k++) {
+    assert_int_equal(ric_flow_start(flow, k, &q, &u, NULL), RIC_OK);
+    while (ric_flow_time(flow) < k + 2) {
+      assert_int_equal(ric_flow_step(flow, k + 2, NULL), RIC_OK);
+      ric_segment piece = ric_flow_piece(flow, 0);
+      assert_true(ric_system_gap_rate(system, 0, piece.start, &q, &u) < 1);
+      ric_flow_accept(flow, 1);
+    }
+  }
+  assert_int_equal(allocations - before, 0);
+  ric_flow_destroy(&flow);
+  ric_system_destroy(&system);
+}
+
 /* The estimate leaves out the block of the flow, the descriptions of the plans, and buffers that FFTW takes for awkward
  * numbers of particles, up to two numbers per site. It serves to refuse what cannot fit. */
 static void check_estimate(scenario s, ric_orbit_method method) {
@@ -174,6 +209,7 @@ int main(void) {
       cmocka_unit_test(solving_again_on_a_free_chain_allocates_nothing),
       cmocka_unit_test(solving_again_with_an_awkward_number_of_particles_allocates_nothing),
       cmocka_unit_test(solving_again_on_a_unit_cell_allocates_nothing),
+      cmocka_unit_test(moving_a_user_system_allocates_nothing),
       cmocka_unit_test(memory_is_what_was_estimated),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -211,13 +211,13 @@ static void destroying_nothing_is_allowed(void **state) {
   (void)state;
   ric_orbit_solver *solver = NULL;
   ric_pattern *pattern = NULL;
-  ric_lattice_flow *flow = NULL;
+  ric_flow *flow = NULL;
   ric_orbit_solver_destroy(&solver);
   ric_orbit_solver_destroy(NULL);
   ric_pattern_destroy(&pattern);
   ric_pattern_destroy(NULL);
-  ric_lattice_flow_destroy(&flow);
-  ric_lattice_flow_destroy(NULL);
+  ric_flow_destroy(&flow);
+  ric_flow_destroy(NULL);
   fixture f = good_problem();
   clear(&f);
   assert_null(f.solver);

@@ -58,7 +58,7 @@ static void lower_bounds_are_those_of_the_polynomials(void **state) {
   random_source source = {.state = 13};
   double coef[(DEGREE + 1) * STRIDE], c[DEGREE + 1], lower[COORDINATES];
   ric_segment s = random_segment(&source, coef);
-  ric_segment_lower_bounds(&s, lower);
+  ric_segment_bounds(&s, lower, NULL);
   for (size_t i = 0; i < COORDINATES; i++) {
     ric_segment_gap(&s, i, 0, c);
     assert_close(lower[i], ric_poly_lower_bound(c, DEGREE), 1e-15);

@@ -29,6 +29,11 @@ RIC_API void ric_poly_bernstein(const double *c, int degree, double *b);
  *  @returns 1 when a value <= cutoff was found. */
 RIC_API int ric_poly_minimum(const double *c, int degree, double cutoff, double tolerance, double *at, double *value);
 
+/** First local minimum inside (0, 1) whose value is at most `cutoff`.
+ *  @returns 1 and sets `at` and `value`, or 0 when there is none. Minima that rounding alone makes are not told from
+ *           others: two of them lie within rounding of each other in value. */
+RIC_API int ric_poly_first_minimum(const double *c, int degree, double cutoff, double *at, double *value);
+
 /** Coefficients r [degree + 1] of the reflected polynomial, r(x) = p(1 - x). */
 RIC_API void ric_poly_reflect(const double *c, int degree, double *r);
 

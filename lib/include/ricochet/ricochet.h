@@ -7,13 +7,21 @@
 #define RICOCHET_H
 
 #include "chain.h"
-#include "lattice_flow.h"
+#include "event.h"
+#include "flow.h"
+#include "lattice.h"
+#include "mck.h"
+#include "obstacle.h"
 #include "orbit.h"
 #include "pattern.h"
 #include "polynomial.h"
 #include "resonance.h"
 #include "segment.h"
 #include "status.h"
+#include "system.h"
+#include "trajectory.h"
+#include "user_system.h"
+#include "verify.h"
 #include "ricochet/version.h"
 
 #endif

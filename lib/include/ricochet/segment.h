@@ -3,7 +3,8 @@
  * Every flow hands out segments, and everything that looks for contacts, minima or states looks at segments. With
  * x = (t - start) / length in [0, 1], coordinate i of the segment is q_i(t) = sum_j coef[j * stride + i] x^j. A segment
  * may cover a stretch of a long chain: `first` is the particle of its coordinate 0. A negative length runs back in
- * time. */
+ * time. Speeds of the state that are no derivatives of coordinates are polynomials of their own, after those of the
+ * coordinates. */
 #ifndef RICOCHET_SEGMENT_H
 #define RICOCHET_SEGMENT_H
 
@@ -14,20 +15,22 @@
 typedef struct ric_segment {
   size_t first;       /* particle of coordinate 0 */
   size_t coordinates; /* number of coordinates */
-  size_t stride;      /* >= coordinates */
+  size_t speeds;      /* number of speeds with polynomials of their own; 0: speeds are the derivatives */
+  size_t stride;      /* >= coordinates + speeds */
   int degree;         /* <= RIC_POLY_DEGREE */
   double start;       /* time at x = 0 */
   double length;      /* time from x = 0 to x = 1, not 0 */
   const double *coef; /* [degree + 1][stride]. Borrowed from the flow, valid until its next step */
 } ric_segment;
 
-/** Positions q and velocities v [coordinates] at x in [0, 1]; v may be NULL. */
+/** Coordinates q [coordinates] and speeds at x in [0, 1]; v is [speeds], or [coordinates] when speeds are the
+ *  derivatives; it may be NULL. */
 RIC_API void ric_segment_state(const ric_segment *segment, double x, double *q, double *v);
 
 /** Gap of a coordinate over a floor, q_i - b, as a polynomial c [degree + 1]. */
 RIC_API void ric_segment_gap(const ric_segment *segment, size_t coordinate, double floor, double *c);
 
-/** Lower bounds [coordinates] of every coordinate over the segment, from the coefficients; cheap. */
-RIC_API void ric_segment_lower_bounds(const ric_segment *segment, double *lower);
+/** Bounds [coordinates] of every coordinate over the segment, from the coefficients; cheap. `upper` may be NULL. */
+RIC_API void ric_segment_bounds(const ric_segment *segment, double *lower, double *upper);
 
 #endif

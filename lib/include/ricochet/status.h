@@ -17,6 +17,7 @@
   X(RIC_ENOMEM, "out of memory")                                                                                       \
   X(RIC_ELIMIT, "a size is beyond a limit of the method")                                                              \
   X(RIC_ENUMERIC, "a numerical kernel failed")                                                                         \
+  X(RIC_ECALLBACK, "a callback of the user failed")                                                                    \
   X(RIC_ESTOPPED, "stopped by the poll callback")
 
 typedef enum ric_status {

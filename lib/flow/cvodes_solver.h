@@ -1,0 +1,48 @@
+/* SUNDIALS CVODES behind a few calls: the one place that knows its interface.
+ *
+ * Adams' formulas of orders 1 to 12 with variable steps; the implicit equations by fixed-point iteration. The local
+ * error of a step, in root mean square over the numbers of a state, is kept below `tolerance` times the size of the
+ * state, itself in root mean square. Functions return NULL or what went wrong as a static text. */
+#ifndef RICOCHET_CVODES_SOLVER_H
+#define RICOCHET_CVODES_SOLVER_H
+
+#include <cvodes/cvodes.h>
+
+#include "ricochet/status.h"
+
+enum { CVODES_ORDER = 12 };
+
+typedef struct cvodes_solver {
+  SUNContext context;
+  void *memory;
+  SUNNonlinearSolver iteration;
+  N_Vector y, row;
+  size_t size;
+  double tolerance;
+  /** Rates of the state [size]. */
+  const char *(*rate)(void *user, double t, const double *y, double *y_rate);
+  void *user;
+  const char *trouble; /* of the last call of `rate` that failed, and when */
+  double trouble_time;
+} cvodes_solver;
+
+ric_status cvodes_solver_init(cvodes_solver *s, double longest_step, ric_error *error);
+void cvodes_solver_clear(cvodes_solver *s);
+
+/** The state [size]; written before a restart, read after a step. */
+double *cvodes_solver_state(const cvodes_solver *s);
+
+/** Forgets the history. */
+const char *cvodes_solver_restart(cvodes_solver *s, double t);
+
+/** One step towards `stop`, and not beyond. @param t  time after it; `stop` itself when it was reached */
+const char *cvodes_solver_step(cvodes_solver *s, double stop, double *t);
+
+/** Length of the last step and of the next one that is planned, the larger of the two, >= 0. */
+double cvodes_solver_span(const cvodes_solver *s);
+
+/** The state on the last step as a polynomial in (time - t) / length, coef [CVODES_ORDER + 1][size]; its degree, -1
+ *  when t does not lie in the step. */
+int cvodes_solver_polynomial(cvodes_solver *s, double t, double length, double *coef);
+
+#endif

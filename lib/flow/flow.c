@@ -1,0 +1,148 @@
+#include "ricochet/flow.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "flow_method.h"
+
+ric_flow_options ric_flow_options_default(void) {
+  return (ric_flow_options){.longest_step = INFINITY};
+}
+
+static ric_status check_options(const ric_flow_options *o, double least_tolerance, ric_error *error) {
+  if (!(o->tolerance == 0 || (o->tolerance >= least_tolerance && o->tolerance <= 1e-2)))
+    return ric_fail(error, RIC_EINVAL, "tolerance = %g, expected %g to 1e-2 (or 0 for the default)", o->tolerance,
+                    least_tolerance);
+  if (!(o->order == 0 || (o->order >= 4 && o->order <= 30)))
+    return ric_fail(error, RIC_EINVAL, "order = %d, expected 4 to 30 (or 0: from the tolerance)", o->order);
+  if (!(o->step >= 0 && o->step < INFINITY))
+    return ric_fail(error, RIC_EINVAL, "step = %g, expected a finite number > 0 (or 0: from the tolerance)", o->step);
+  if (!(o->longest_step > 0))
+    return ric_fail(error, RIC_EINVAL, "longest_step = %g, expected > 0", o->longest_step);
+  return RIC_OK;
+}
+
+ric_status ric_flow_create(const ric_system *system, const ric_flow_options *options, ric_flow **flow,
+                           ric_error *error) {
+  ric_flow_options o = options ? *options : ric_flow_options_default();
+  *flow = NULL;
+  if (o.method != RIC_FLOW_AUTO && o.method != RIC_FLOW_TAYLOR && o.method != RIC_FLOW_CVODES)
+    return ric_fail(error, RIC_EINVAL, "flow method = %d, expected auto, taylor or cvodes", (int)o.method);
+  if (o.method == RIC_FLOW_TAYLOR && !system->taylor)
+    return ric_fail(error, RIC_EINVAL, "flow method = taylor, expected cvodes: a user's system has no Taylor flow");
+  if (o.method == RIC_FLOW_AUTO)
+    o.method = system->taylor ? RIC_FLOW_TAYLOR : RIC_FLOW_CVODES;
+  RIC_TRY(check_options(&o, o.method == RIC_FLOW_TAYLOR ? 1e-17 : 1e-14, error));
+  if (o.tolerance == 0)
+    o.tolerance = o.method == RIC_FLOW_TAYLOR ? 1e-16 : 1e-12;
+  if (o.method == RIC_FLOW_CVODES)
+    return cvodes_flow_create(system, &o, flow, error);
+  return system->taylor == SYSTEM_LATTICE ? lattice_flow_create(system, &o, flow, error)
+                                          : mck_flow_create(system, &o, flow, error);
+}
+
+ric_status flow_init(ric_flow *flow, const flow_method *method, const ric_system *system,
+                     const ric_flow_options *options, ric_error *error) {
+  size_t n = system->coordinates, m = system->speeds, count = system->obstacle_count;
+  *flow = (ric_flow){.method = method, .system = system, .options = *options, .pieces = 1};
+  flow->q = calloc(n, sizeof *flow->q);
+  flow->u = calloc(m ? m : 1, sizeof *flow->u);
+  flow->contact = calloc(count ? count : 1, 1);
+  if (flow->q && flow->u && flow->contact)
+    return RIC_OK;
+  flow_clear(flow);
+  return ric_fail(error, RIC_ENOMEM, "no memory for a flow of %zu coordinates", n);
+}
+
+void flow_clear(ric_flow *flow) {
+  free(flow->q);
+  free(flow->u);
+  free(flow->contact);
+  flow->q = flow->u = NULL;
+  flow->contact = NULL;
+}
+
+void ric_flow_destroy(ric_flow **flow) {
+  if (!flow || !*flow)
+    return;
+  (*flow)->method->destroy(*flow);
+  *flow = NULL;
+}
+
+static ric_status check_finite(const char *name, const double *x, size_t count, ric_error *error) {
+  for (size_t i = 0; i < count; i++)
+    if (!isfinite(x[i]))
+      return ric_fail(error, RIC_EINVAL, "%s[%zu] = %g, expected a finite number", name, i, x[i]);
+  return RIC_OK;
+}
+
+ric_status ric_flow_start(ric_flow *flow, double t, const double *q, const double *u, ric_error *error) {
+  size_t n = flow->system->coordinates, m = flow->system->speeds;
+  if (!isfinite(t))
+    return ric_fail(error, RIC_EINVAL, "t = %g, expected a finite time", t);
+  RIC_TRY(check_finite("q", q, n, error));
+  RIC_TRY(check_finite("u", u, m, error));
+  flow->time = flow->end = t;
+  flow->length = 0;
+  memmove(flow->q, q, n * sizeof *q); /* a caller may start from the flow's own state */
+  if (m)
+    memmove(flow->u, u, m * sizeof *u);
+  return flow_restart(flow, error);
+}
+
+ric_status flow_restart(ric_flow *flow, ric_error *error) {
+  flow->counts.starts++;
+  return flow->method->start(flow, error);
+}
+
+ric_status ric_flow_step(ric_flow *flow, double stop, ric_error *error) {
+  flow->length = 0;
+  if (!isfinite(stop))
+    return ric_fail(error, RIC_EINVAL, "stop = %g, expected a finite time", stop);
+  if (stop == flow->time)
+    return ric_fail(error, RIC_EINVAL, "stop = %.17g, expected another time than that of the flow", stop);
+  flow->counts.steps++;
+  return flow->method->step(flow, stop, error);
+}
+
+size_t ric_flow_pieces(const ric_flow *flow) {
+  return flow->pieces;
+}
+
+ric_segment ric_flow_piece(ric_flow *flow, size_t index) {
+  return flow->method->piece(flow, index);
+}
+
+void ric_flow_accept(ric_flow *flow, double x) {
+  flow->method->accept(flow, x);
+  flow->time = x == 1 ? flow->end : flow->time + x * flow->length;
+  flow->length = 0;
+}
+
+double ric_flow_time(const ric_flow *flow) {
+  return flow->time;
+}
+
+double ric_flow_step_end(const ric_flow *flow) {
+  return flow->end;
+}
+
+const double *ric_flow_q(const ric_flow *flow) {
+  return flow->q;
+}
+
+const double *ric_flow_u(const ric_flow *flow) {
+  return flow->u;
+}
+
+ric_flow_counts ric_flow_counted(const ric_flow *flow) {
+  return flow->counts;
+}
+
+void flow_set_contact(ric_flow *flow, size_t obstacle, contact_state state) {
+  flow->contact[obstacle] = (unsigned char)state;
+}
+
+contact_state flow_contact(const ric_flow *flow, size_t obstacle) {
+  return (contact_state)flow->contact[obstacle];
+}

@@ -1,0 +1,75 @@
+/* Taylor series of lattices, block by block: internal to the library.
+ *
+ * The coefficients of q(start + length x) in x of a stretch of particles, from the state of the whole lattice: O(n) per
+ * step, vectorised over particles (lattice_block.h). A stretch that is not the whole lattice reads neighbours beyond
+ * its ends: order / 2 of them, order - 1 with damped links. Coordinates may be held, and Hertz contacts may press;
+ * which do is the caller's to say. Nothing here looks for contacts. */
+#ifndef RICOCHET_LATTICE_SERIES_H
+#define RICOCHET_LATTICE_SERIES_H
+
+#include "ricochet/lattice.h"
+#include "ricochet/segment.h"
+
+enum {
+  LATTICE_SERIES_BLOCK = 256, /* particles of a block: 27 coefficients of 282 particles are 61 kB */
+  LATTICE_SERIES_ORDER = 30   /* highest order */
+};
+
+/** A pressed Hertz contact: force side * stiffness * u^{3/2} with u = side (position - q) > 0. */
+typedef struct lattice_press {
+  size_t coordinate;
+  int side;
+  double position, stiffness;
+} lattice_press;
+
+/** Contacts that act, each list in order of its coordinates. */
+typedef struct lattice_contacts {
+  const size_t *held; /* coordinates that stay where they are */
+  size_t held_count;
+  const lattice_press *pressed;
+  size_t pressed_count;
+} lattice_contacts;
+
+/** Workspace of one block. */
+typedef struct lattice_series lattice_series;
+
+/** @param lattice  says which terms there will be: later ones must not have others
+ *  @param order  4 to LATTICE_SERIES_ORDER
+ *  @param block  most particles of a stretch */
+ric_status lattice_series_create(const ric_lattice *lattice, int order, size_t block, lattice_series **series,
+                                 ric_error *error);
+void lattice_series_destroy(lattice_series **series);
+
+/** Sets the lattice and its contacts (NULL: none), both borrowed until the next call.
+ *  @returns RIC_ENOMEM. */
+ric_status lattice_series_begin(lattice_series *series, const ric_lattice *lattice, const lattice_contacts *contacts,
+                                ric_error *error);
+
+/** Segment of the particles [first, first + count), count <= block; beyond the last one of a ring comes the first.
+ *  @param q, v  [n] state at time `start`; q of pressed coordinates lies below their obstacles (u > 0)
+ *  @param length  not 0; negative runs back in time
+ *  @returns the segment; its coefficients live in the workspace until the next call. */
+ric_segment lattice_series_segment(lattice_series *series, const double *q, const double *v, double start,
+                                   double length, size_t first, size_t count);
+
+/** The last segment. */
+ric_segment lattice_series_last(const lattice_series *series);
+
+/** How the coefficients of the last segment fall off. */
+typedef struct lattice_decay {
+  double change;       /* largest |c_1|, |c_2|, |c_3|; NaN if any of the last two coefficients is not finite */
+  double tail[2];      /* largest |c_{order - 1}|, |c_order| */
+  double nearest_zero; /* lower bound of |x| for zeros of a pressed contact's u: beyond them its force has no series */
+} lattice_decay;
+lattice_decay lattice_series_decay(const lattice_series *series);
+
+/** Makes the last segment shorter: its length times 0 < r < 1, without a new recurrence. */
+ric_segment lattice_series_shorten(lattice_series *series, const double *q, const double *v, double r);
+
+/** Force on a particle of the last segment along it, as if it were not held: its springs, its links and the forcing,
+ *  without Hertz contacts. Its neighbours must belong to the segment, or the segment be the whole lattice.
+ *  @param c  [RIC_POLY_DEGREE + 1], all set; cubes and cosines go beyond the order of the series
+ *  @returns the degree. */
+int lattice_series_force(const lattice_series *series, size_t particle, double *c);
+
+#endif

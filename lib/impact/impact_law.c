@@ -1,0 +1,228 @@
+#include "impact_law.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static const double coupling_tol = 1e-13; /* of g_i^T M^-1 g_j against the diagonal: below it, rounding */
+
+ric_status impact_solver_init(impact_solver *solver, const ric_system *system, ric_error *error) {
+  *solver = (impact_solver){.system = system};
+  if (system->model->direction)
+    return RIC_OK;
+  solver->before = malloc(system->coordinates * sizeof *solver->before);
+  solver->after = malloc(system->coordinates * sizeof *solver->after);
+  if (solver->before && solver->after)
+    return RIC_OK;
+  impact_solver_clear(solver);
+  return ric_fail(error, RIC_ENOMEM, "no memory for impacts of %zu states", system->coordinates);
+}
+
+void impact_solver_clear(impact_solver *solver) {
+  complementarity_clear(&solver->lcp);
+  free(solver->g);
+  free(solver->w);
+  free(solver->directions);
+  free(solver->matrix);
+  free(solver->rhs);
+  free(solver->solution);
+  free(solver->before);
+  free(solver->after);
+  *solver = (impact_solver){0};
+}
+
+/* Room for `count` directions at a time, and for their complementarity problem. */
+static ric_status reserve(impact_solver *s, size_t count, ric_error *error) {
+  size_t m = s->system->speeds;
+  if (count <= s->capacity)
+    return RIC_OK;
+  impact_solver kept = {.system = s->system, .lcp = s->lcp, .before = s->before, .after = s->after};
+  s->lcp = (complementarity_work){0};
+  s->before = s->after = NULL;
+  impact_solver_clear(s);
+  *s = kept;
+  s->g = malloc(count * m * sizeof *s->g);
+  s->w = malloc(count * m * sizeof *s->w);
+  s->directions = malloc(count * sizeof *s->directions);
+  s->matrix = malloc(count * count * sizeof *s->matrix);
+  s->rhs = malloc(count * sizeof *s->rhs);
+  s->solution = malloc(count * sizeof *s->solution);
+  if (!s->g || !s->w || !s->directions || !s->matrix || !s->rhs || !s->solution)
+    return ric_fail(error, RIC_ENOMEM, "no memory for %zu contacts at one time", count);
+  s->capacity = count;
+  return RIC_OK;
+}
+
+static ric_status blame(ric_error *error, double t, size_t obstacle, const char *trouble) {
+  return ric_fail(error, RIC_ECALLBACK, "at t = %g, obstacle %zu: %s", t, obstacle, trouble);
+}
+
+static ric_status find_direction(impact_solver *s, size_t slot, size_t obstacle, double t, const double *q,
+                                 ric_error *error) {
+  size_t m = s->system->speeds;
+  contact_direction *d = &s->directions[slot];
+  *d = (contact_direction){.g = s->g + slot * m, .w = s->w + slot * m};
+  const char *trouble = s->system->model->direction(s->system, obstacle, t, q, d);
+  return trouble ? blame(error, t, obstacle, trouble) : RIC_OK;
+}
+
+/* g_a . w_b over the speeds that both reach. */
+static double product(const contact_direction *a, const contact_direction *b) {
+  size_t from = a->first > b->first ? a->first : b->first;
+  size_t a_end = a->first + a->count, b_end = b->first + b->count, to = a_end < b_end ? a_end : b_end;
+  double sum = 0;
+  for (size_t i = from; i < to; i++)
+    sum += a->g[i - a->first] * b->w[i - b->first];
+  return sum;
+}
+
+static void push(const contact_direction *d, double impulse, double *u) {
+  for (size_t i = 0; i < d->count; i++)
+    u[d->first + i] += impulse * d->w[i];
+}
+
+static ric_status read_rate(const impact_solver *s, double t, const double *q, const double *u, size_t obstacle,
+                            double *rate, ric_error *error) {
+  const char *trouble = s->system->model->gap_rate(s->system, obstacle, t, q, u, rate);
+  return trouble ? blame(error, t, obstacle, trouble) : RIC_OK;
+}
+
+/* [FN97] (2.9) for one contact alone. */
+static ric_status apply_alone(impact_solver *s, double t, const double *q, double *u, impact *c, ric_error *error) {
+  double e = s->system->model->restitution(s->system, c->obstacle);
+  RIC_TRY(find_direction(s, 0, c->obstacle, t, q, error));
+  RIC_TRY(read_rate(s, t, q, u, c->obstacle, &c->rate, error));
+  c->inverse_mass = product(&s->directions[0], &s->directions[0]);
+  c->impulse = c->rate < 0 ? -(1 + e) * c->rate / c->inverse_mass : 0;
+  c->rate_end = c->rate < 0 ? -e * c->rate : c->rate;
+  c->loss = c->impulse * -(c->rate + c->rate_end) / 2;
+  c->coupled = false;
+  push(&s->directions[0], c->impulse, u);
+  return RIC_OK;
+}
+
+static void fill_matrix(impact_solver *s, size_t count) {
+  for (size_t i = 0; i < count; i++)
+    for (size_t j = 0; j < count; j++)
+      s->matrix[i * count + j] = product(&s->directions[i], &s->directions[j]);
+}
+
+static ric_status set_up(impact_solver *s, double t, const double *q, const double *u, impact *contacts, size_t count,
+                         ric_error *error) {
+  for (size_t i = 0; i < count; i++) {
+    RIC_TRY(find_direction(s, i, contacts[i].obstacle, t, q, error));
+    RIC_TRY(read_rate(s, t, q, u, contacts[i].obstacle, &contacts[i].rate, error));
+    s->rhs[i] = (1 + s->system->model->restitution(s->system, contacts[i].obstacle)) * contacts[i].rate;
+  }
+  fill_matrix(s, count);
+  return RIC_OK;
+}
+
+static bool couples(const double *matrix, size_t count, size_t i) {
+  for (size_t j = 0; j < count; j++) {
+    double scale = sqrt(matrix[i * count + i] * matrix[j * count + j]);
+    if (j != i && fabs(matrix[i * count + j]) > coupling_tol * scale)
+      return true;
+  }
+  return false;
+}
+
+/* Moreau's form for all of them together. */
+static ric_status apply_together(impact_solver *s, double t, const double *q, double *u, impact *contacts, size_t count,
+                                 ric_error *error) {
+  RIC_TRY(set_up(s, t, q, u, contacts, count, error));
+  RIC_TRY(complementarity_solve(&s->lcp, count, s->matrix, s->rhs, s->solution, error));
+  for (size_t i = 0; i < count; i++) {
+    impact *c = &contacts[i];
+    c->impulse = s->solution[i];
+    c->rate_end = c->rate;
+    for (size_t j = 0; j < count; j++)
+      c->rate_end += s->matrix[i * count + j] * s->solution[j];
+    c->inverse_mass = s->matrix[i * count + i];
+    c->loss = c->impulse * -(c->rate + c->rate_end) / 2;
+    c->coupled = couples(s->matrix, count, i);
+    push(&s->directions[i], c->impulse, u);
+  }
+  return RIC_OK;
+}
+
+/* One impact map; s->before keeps the state before it. */
+static ric_status apply_map(impact_solver *s, double t, double *x, impact *c, ric_error *error) {
+  const ric_system *system = s->system;
+  size_t bytes = system->coordinates * sizeof *x;
+  double energy_before = ric_system_energy(system, t, x, NULL);
+  RIC_TRY(read_rate(s, t, x, NULL, c->obstacle, &c->rate, error));
+  c->rate_end = c->rate;
+  c->inverse_mass = NAN;
+  c->impulse = c->rate < 0 ? NAN : 0;
+  c->loss = 0;
+  c->coupled = false;
+  if (!(c->rate < 0)) /* an impact before it has turned this one around */
+    return RIC_OK;
+  const char *trouble = system->model->impact(system, c->obstacle, t, x, s->after);
+  if (trouble)
+    return blame(error, t, c->obstacle, trouble);
+  memcpy(s->before, x, bytes);
+  memcpy(x, s->after, bytes);
+  c->loss = energy_before - ric_system_energy(system, t, x, NULL);
+  return read_rate(s, t, x, NULL, c->obstacle, &c->rate_end, error);
+}
+
+/* Maps in order of the obstacles; coupled when one changes the rate that another begins with. */
+static ric_status apply_maps(impact_solver *s, double t, double *x, impact *contacts, size_t count, ric_error *error) {
+  for (size_t i = 0; i < count; i++)
+    RIC_TRY(read_rate(s, t, x, NULL, contacts[i].obstacle, &contacts[i].rate_end, error));
+  for (size_t i = 0; i < count; i++) {
+    double alone = contacts[i].rate_end;
+    RIC_TRY(apply_map(s, t, x, &contacts[i], error));
+    contacts[i].coupled = fabs(contacts[i].rate - alone) > coupling_tol * (1 + fabs(alone));
+  }
+  return RIC_OK;
+}
+
+ric_status impact_apply(impact_solver *solver, double t, double *q, double *u, impact *contacts, size_t count,
+                        ric_error *error) {
+  if (!solver->system->model->direction)
+    return apply_maps(solver, t, q, contacts, count, error);
+  if (!solver->system->uncoupled && count > 1) {
+    RIC_TRY(reserve(solver, count, error));
+    return apply_together(solver, t, q, u, contacts, count, error);
+  }
+  RIC_TRY(reserve(solver, 1, error));
+  for (size_t i = 0; i < count; i++)
+    RIC_TRY(apply_alone(solver, t, q, u, &contacts[i], error));
+  return RIC_OK;
+}
+
+ric_status impact_stick(impact_solver *solver, double t, double *q, double *u, impact *contact, ric_error *error) {
+  double left = contact->rate_end;
+  if (solver->system->model->direction) {
+    RIC_TRY(find_direction(solver, 0, contact->obstacle, t, q, error));
+    push(&solver->directions[0], -left / contact->inverse_mass, u);
+    contact->impulse -= left / contact->inverse_mass;
+    contact->loss += left * left / (2 * contact->inverse_mass);
+  } else { /* the gap rate is zero between the states before and after */
+    double back = left / (left - contact->rate), energy = ric_system_energy(solver->system, t, q, NULL);
+    for (size_t i = 0; i < solver->system->coordinates; i++)
+      q[i] -= back * (q[i] - solver->before[i]);
+    contact->loss += energy - ric_system_energy(solver->system, t, q, NULL);
+  }
+  contact->rate_end = 0;
+  return RIC_OK;
+}
+
+ric_status contact_forces(impact_solver *solver, double t, const double *q, const size_t *obstacles, const double *b,
+                          size_t count, double *lambda, ric_error *error) {
+  bool maps = !solver->system->model->direction, alone = maps || solver->system->uncoupled || count == 1;
+  if (!maps)
+    RIC_TRY(reserve(solver, alone ? 1 : count, error));
+  for (size_t i = 0; i < count; i++) {
+    if (!maps)
+      RIC_TRY(find_direction(solver, alone ? 0 : i, obstacles[i], t, q, error));
+    if (alone)
+      lambda[i] = fmax(-b[i] / (maps ? 1 : product(&solver->directions[0], &solver->directions[0])), 0);
+  }
+  if (alone)
+    return RIC_OK;
+  fill_matrix(solver, count);
+  return complementarity_solve(&solver->lcp, count, solver->matrix, b, lambda, error);
+}

@@ -1,0 +1,58 @@
+/* Impacts: how speeds jump at one time, for one contact or several: internal to the library.
+ *
+ * Newton's law h'+ = -e h'- with an impulse p >= 0 along the gap's gradient, [FN97] (2.9). Contacts that do not couple
+ * (g_i^T M^-1 g_j = 0) follow one by one, in any order. Coupled ones, and persistent contacts that an impulse reaches,
+ * together solve Moreau's form of the law,
+ *
+ *   0 <= p  _|_  A p + (1 + e) h'- >= 0,   A_ij = g_i^T M^-1 g_j,
+ *
+ * a linear complementarity problem. Impact maps of first-order systems are applied in order of the obstacles. */
+#ifndef RICOCHET_IMPACT_LAW_H
+#define RICOCHET_IMPACT_LAW_H
+
+#include "complementarity.h"
+#include "model/system_model.h"
+
+/** One contact at the time of impact. */
+typedef struct impact {
+  size_t obstacle;
+  double rate, rate_end; /* gap rates before and after */
+  double impulse;
+  double loss;         /* of energy; NaN where unknown */
+  double inverse_mass; /* g^T M^-1 g; NaN for impact maps */
+  bool coupled;        /* with another of the list */
+} impact;
+
+/** Contacts of one time and what their laws need. Grows; solving again for as many contacts allocates nothing. */
+typedef struct impact_solver {
+  const ric_system *system;
+  complementarity_work lcp;
+  size_t capacity; /* contacts with directions */
+  double *g, *w;   /* [capacity][m], uncoupled systems: one row */
+  contact_direction *directions;
+  double *matrix, *rhs, *solution; /* [capacity^2], [capacity], [capacity] */
+  double *before, *after;          /* [n] states of impact maps */
+} impact_solver;
+
+ric_status impact_solver_init(impact_solver *solver, const ric_system *system, ric_error *error);
+void impact_solver_clear(impact_solver *solver);
+
+/** Applies the law to contacts [count] with their `obstacle` given; sets all else in them.
+ *  @param q, u  [n], [m] state; u changes (q for first-order systems) */
+ric_status impact_apply(impact_solver *solver, double t, double *q, double *u, impact *contacts, size_t count,
+                        ric_error *error);
+
+/** After impact_apply: takes the rate that is left of one contact as well, so that it ends at zero. The contact must
+ * not be coupled; for first-order systems it must have been the only one. */
+ric_status impact_stick(impact_solver *solver, double t, double *q, double *u, impact *contact, ric_error *error);
+
+/** Solves the contact conditions for accelerations of contacts with gap and gap rate zero,
+ *
+ *   0 <= lambda  _|_  A lambda + b >= 0,   b = accelerations of the gaps without these forces.
+ *
+ *  @param obstacles, b  [count]
+ *  @param lambda  [count], set */
+ric_status contact_forces(impact_solver *solver, double t, const double *q, const size_t *obstacles, const double *b,
+                          size_t count, double *lambda, ric_error *error);
+
+#endif

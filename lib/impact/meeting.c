@@ -1,0 +1,232 @@
+/* What happens when contacts meet: at the start of a run, and at the first roots of a step. */
+#include <stdlib.h>
+
+#include "trajectory_state.h"
+
+static ric_status add_impact(ric_trajectory *tr, size_t obstacle, ric_error *error) {
+  if (tr->impact_count == tr->impact_capacity) {
+    size_t capacity = tr->impact_capacity ? 2 * tr->impact_capacity : 16;
+    impact *impacts = realloc(tr->impacts, capacity * sizeof *impacts);
+    if (!impacts)
+      return ric_fail(error, RIC_ENOMEM, "no memory for %zu impacts at one time", capacity);
+    tr->impacts = impacts;
+    tr->impact_capacity = capacity;
+  }
+  tr->impacts[tr->impact_count++] = (impact){.obstacle = obstacle};
+  return RIC_OK;
+}
+
+static ric_status depart(ric_trajectory *tr, size_t obstacle, departure how, ric_error *error) {
+  tr->locator.departure[obstacle] = (unsigned char)how;
+  return index_list_add(&tr->departing, obstacle, error);
+}
+
+static double gap_now(const ric_trajectory *tr, size_t obstacle) {
+  return ric_system_gap(tr->system, obstacle, tr->flow->time, tr->flow->q);
+}
+
+static double rate_now(const ric_trajectory *tr, size_t obstacle) {
+  return ric_system_gap_rate(tr->system, obstacle, tr->flow->time, tr->flow->q, tr->flow->u);
+}
+
+static bool is_compliant(const ric_trajectory *tr, size_t obstacle) {
+  return tr->system->obstacles && tr->system->obstacles[obstacle].stiffness < INFINITY;
+}
+
+/* A compliant contact begins or ends to press. */
+static ric_status switch_contact(ric_trajectory *tr, size_t obstacle, ric_error *error) {
+  bool presses = flow_contact(tr->flow, obstacle) == CONTACT_PRESSED;
+  flow_set_contact(tr->flow, obstacle, presses ? CONTACT_OPEN : CONTACT_PRESSED);
+  ric_event event = event_of(tr, presses ? RIC_EVENT_PARTING : RIC_EVENT_CONTACT, obstacle);
+  event.gap_rate = event.gap_rate_end = rate_now(tr, obstacle);
+  trajectory_show(tr, &event);
+  return depart(tr, obstacle, DEPARTS_FAST, error);
+}
+
+/* Depth to which a contact that comes in slowly would go, by its acceleration; -INFINITY when it does not turn around
+ * or comes in too fast to ask. */
+static ric_status depth_of(ric_trajectory *tr, size_t obstacle, double rate, double *depth, ric_error *error) {
+  double acceleration, tol = tr->options.grazing_tol;
+  *depth = -INFINITY;
+  if (rate * rate > 1e6 * tol) /* deeper than tol for every acceleration below 5e5 */
+    return RIC_OK;
+  RIC_TRY(gap_acceleration(tr, obstacle, &acceleration, error));
+  if (acceleration > 0)
+    *depth = -rate * rate / (2 * acceleration);
+  return RIC_OK;
+}
+
+/* Sorts an impact's aftermath: leave, settle, or be summed up with those that would follow. */
+static ric_status aftermath(ric_trajectory *tr, impact *c, double threshold, double *accumulation, ric_error *error) {
+  bool chatters = false, alone = !c->coupled && (tr->system->model->direction || tr->impact_count == 1);
+  double duration;
+  *accumulation = NAN;
+  if (c->rate_end > threshold && c->rate < -threshold && alone)
+    RIC_TRY(chatter_ahead(tr, c->obstacle, c->rate_end, &chatters, &duration, error));
+  if (chatters) {
+    *accumulation = tr->flow->time + duration;
+    RIC_TRY(impact_stick(&tr->law, tr->flow->time, tr->flow->q, tr->flow->u, c, error));
+    return index_list_add(&tr->settling, c->obstacle, error);
+  }
+  if (c->rate_end > threshold)
+    return depart(tr, c->obstacle, DEPARTS_FAST, error);
+  return index_list_add(&tr->settling, c->obstacle, error);
+}
+
+static ric_status will_rest(ric_trajectory *tr, size_t obstacle, double time, ric_error *error) {
+  if (tr->coming_count == tr->coming_capacity) {
+    size_t capacity = tr->coming_capacity ? 2 * tr->coming_capacity : 16;
+    coming_rest *coming = realloc(tr->coming, capacity * sizeof *coming);
+    if (!coming)
+      return ric_fail(error, RIC_ENOMEM, "no memory for %zu contacts that come to rest", capacity);
+    tr->coming = coming;
+    tr->coming_capacity = capacity;
+  }
+  tr->coming[tr->coming_count++] = (coming_rest){.time = time, .obstacle = obstacle};
+  tr->resting[obstacle] = COMES_TO_REST;
+  return index_list_add(&tr->held, obstacle, error);
+}
+
+static ric_event_kind kind_of(const ric_trajectory *tr, const impact *c, size_t hits, double depth,
+                              double accumulation) {
+  if (c->coupled)
+    return RIC_EVENT_COUPLED;
+  if (!isnan(accumulation))
+    return RIC_EVENT_CHATTER;
+  if (depth >= -tr->options.grazing_tol)
+    return RIC_EVENT_GRAZING;
+  return hits > 1 ? RIC_EVENT_SIMULTANEOUS : RIC_EVENT_TRANSVERSAL;
+}
+
+static void show_impact(ric_trajectory *tr, const impact *c, size_t hits, double depth, double accumulation) {
+  ric_event event = event_of(tr, kind_of(tr, c, hits, depth, accumulation), c->obstacle);
+  event.gap_rate = c->rate;
+  event.gap_rate_end = c->rate_end;
+  event.impulse = c->impulse;
+  event.energy_loss = c->loss;
+  event.depth = event.kind == RIC_EVENT_GRAZING ? depth : NAN;
+  event.accumulation = accumulation;
+  trajectory_show(tr, &event);
+}
+
+/* A contact of the list: an impact, or a persistent contact that shares in the impulses. */
+static ric_status conclude_impact(ric_trajectory *tr, impact *c, size_t hits, double threshold, double depth,
+                                  ric_error *error) {
+  double accumulation;
+  bool rested = tr->resting[c->obstacle] != RESTS_NOT;
+  RIC_TRY(aftermath(tr, c, threshold, &accumulation, error));
+  if (c->rate < -threshold || c->impulse > 0)
+    show_impact(tr, c, hits, depth, accumulation);
+  if (!isnan(c->loss))
+    tr->run->impact_loss += c->loss;
+  if (rested && c->rate_end > threshold) {
+    flow_set_contact(tr->flow, c->obstacle, CONTACT_OPEN);
+    contact_release(tr, c->obstacle);
+  }
+  return isnan(accumulation) ? RIC_OK : will_rest(tr, c->obstacle, accumulation, error);
+}
+
+/* Applies the law to tr->impacts, the first `hits` of which are new. */
+static ric_status collide(ric_trajectory *tr, size_t hits, double threshold, ric_error *error) {
+  ric_flow *f = tr->flow;
+  double depth = -INFINITY;
+  if (hits == 1)
+    RIC_TRY(depth_of(tr, tr->impacts[0].obstacle, rate_now(tr, tr->impacts[0].obstacle), &depth, error));
+  RIC_TRY(impact_apply(&tr->law, f->time, f->q, f->u, tr->impacts, tr->impact_count, error));
+  for (size_t i = 0; i < tr->impact_count; i++)
+    RIC_TRY(conclude_impact(tr, &tr->impacts[i], hits, threshold, i < hits ? depth : -INFINITY, error));
+  return RIC_OK;
+}
+
+/* A root of an open rigid contact: an impact, a touch with rate zero, or noise on its way out. */
+static ric_status sort_root(ric_trajectory *tr, size_t obstacle, double threshold, ric_error *error) {
+  double rate = rate_now(tr, obstacle);
+  if (rate < -threshold)
+    return add_impact(tr, obstacle, error);
+  ric_event event = event_of(tr, RIC_EVENT_GRAZING, obstacle);
+  event.gap_rate = event.gap_rate_end = rate;
+  event.depth = gap_now(tr, obstacle);
+  trajectory_show(tr, &event);
+  return rate > threshold ? depart(tr, obstacle, DEPARTS_FAST, error) : index_list_add(&tr->settling, obstacle, error);
+}
+
+/* Contacts that persist have their part in what happens at an impact: impulses where they couple, forces anyway. */
+static ric_status add_held(ric_trajectory *tr, ric_error *error) {
+  bool share = !tr->system->uncoupled && tr->system->model->direction;
+  for (size_t i = 0; i < tr->held.count; i++) {
+    size_t obstacle = tr->held.items[i];
+    if (tr->resting[obstacle] != RESTS_NOT)
+      RIC_TRY(share ? add_impact(tr, obstacle, error) : index_list_add(&tr->settling, obstacle, error));
+  }
+  return RIC_OK;
+}
+
+/* Impacts are gathered in tr->impacts; rests and touches in tr->settling. */
+static ric_status resolve(ric_trajectory *tr, double threshold, ric_error *error) {
+  size_t hits = tr->impact_count;
+  if (hits > 0) {
+    RIC_TRY(add_held(tr, error));
+    RIC_TRY(collide(tr, hits, threshold, error));
+  }
+  contacts_forget_released(tr);
+  RIC_TRY(contacts_settle(tr, error));
+  return flow_restart(tr->flow, error);
+}
+
+ric_status contacts_meet(ric_trajectory *tr, ric_error *error) {
+  double threshold = rest_rate(tr);
+  tr->impact_count = tr->settling.count = 0;
+  for (size_t i = 0; i < tr->locator.roots.count; i++) {
+    size_t obstacle = tr->locator.roots.hits[i].obstacle;
+    if (is_compliant(tr, obstacle))
+      RIC_TRY(switch_contact(tr, obstacle, error));
+    else if (flow_contact(tr->flow, obstacle) == CONTACT_HELD) {
+      flow_set_contact(tr->flow, obstacle, CONTACT_OPEN);
+      contact_release(tr, obstacle);
+      RIC_TRY(depart(tr, obstacle, DEPARTS_SLOWLY, error));
+    } else
+      RIC_TRY(sort_root(tr, obstacle, threshold, error));
+  }
+  return resolve(tr, threshold, error);
+}
+
+static ric_status begin_one(ric_trajectory *tr, size_t obstacle, double threshold, ric_error *error) {
+  double gap = gap_now(tr, obstacle), rate = rate_now(tr, obstacle);
+  if (is_compliant(tr, obstacle)) {
+    if (gap < -tr->noise || (gap < tr->noise && rate < 0))
+      flow_set_contact(tr->flow, obstacle, CONTACT_PRESSED);
+    return fabs(gap) < tr->noise ? depart(tr, obstacle, DEPARTS_FAST, error) : RIC_OK;
+  }
+  if (gap > tr->noise)
+    return RIC_OK;
+  if (rate < -threshold)
+    return add_impact(tr, obstacle, error);
+  return rate > threshold ? depart(tr, obstacle, DEPARTS_FAST, error) : index_list_add(&tr->settling, obstacle, error);
+}
+
+ric_status contacts_begin(ric_trajectory *tr, ric_error *error) {
+  double threshold = rest_rate(tr);
+  tr->impact_count = tr->settling.count = 0;
+  for (size_t j = 0; j < tr->system->obstacle_count; j++)
+    RIC_TRY(begin_one(tr, j, threshold, error));
+  return resolve(tr, threshold, error);
+}
+
+ric_status contacts_depart(ric_trajectory *tr, ric_error *error) {
+  size_t kept = 0;
+  for (size_t i = 0; i < tr->departing.count; i++) {
+    size_t obstacle = tr->departing.items[i];
+    double gap = gap_now(tr, obstacle);
+    if (isnan(gap))
+      return ric_fail(error, RIC_ECALLBACK, "at t = %g: the gap of obstacle %zu could not be evaluated", tr->flow->time,
+                      obstacle);
+    if (tr->locator.departure[obstacle] == DEPARTED)
+      continue;
+    if (fabs(gap) > tr->noise)
+      tr->locator.departure[obstacle] = DEPARTED;
+    else
+      tr->departing.items[kept++] = obstacle;
+  }
+  tr->departing.count = kept;
+  return RIC_OK;
+}

@@ -1,0 +1,85 @@
+/* What a trajectory holds: internal to the impact room. */
+#ifndef RICOCHET_TRAJECTORY_STATE_H
+#define RICOCHET_TRAJECTORY_STATE_H
+
+#include "impact_law.h"
+#include "locate.h"
+#include "ricochet/trajectory.h"
+
+/** Obstacles in a list that grows. */
+typedef struct index_list {
+  size_t *items;
+  size_t count, capacity;
+} index_list;
+
+ric_status index_list_add(index_list *list, size_t item, ric_error *error);
+
+/** Whether a contact persists; COMES_TO_REST: it is held since its impacts were summed up, and will have come to rest
+ * at a time in `coming`. */
+typedef enum resting { RESTS_NOT, RESTS, COMES_TO_REST } resting;
+
+typedef struct coming_rest {
+  double time;
+  size_t obstacle;
+} coming_rest;
+
+struct ric_trajectory {
+  const ric_system *system;
+  ric_trajectory_options options;
+  ric_flow *flow;
+  locator locator;
+  impact_solver law;
+  bool started, fresh; /* fresh: contacts at the start have not been looked at yet */
+  double noise;        /* gaps and gap rates below it are zero */
+
+  impact *impacts; /* contacts of one time */
+  size_t impact_count, impact_capacity;
+  unsigned char *resting;               /* [obstacles] */
+  index_list held, departing, settling; /* contacts that persist; have just left; are to be decided */
+  double *accelerations, *forces;       /* of settling contacts, grown with them */
+  size_t settling_capacity;
+  coming_rest *coming; /* in no order */
+  size_t coming_count, coming_capacity;
+  double *rates, *shifted; /* [n + m] work */
+
+  const ric_observer *observer; /* of the run going on; NULL: none */
+  ric_run *run;
+  bool ended;          /* the observer asked for it */
+  double window_start; /* of the unit of time in which events are counted */
+  double window_events;
+};
+
+/** Shows an event to the observer and counts it. Unset fields: see event_of. */
+void trajectory_show(ric_trajectory *tr, const ric_event *event);
+
+/** An event of an obstacle now, with nothing known but where and when. */
+ric_event event_of(const ric_trajectory *tr, ric_event_kind kind, size_t obstacle);
+void trajectory_show_kind(ric_trajectory *tr, ric_event_kind kind, size_t obstacle);
+
+/** Looks at the contacts closed at the start: some hit at once, some rest, some leave. */
+ric_status contacts_begin(ric_trajectory *tr, ric_error *error);
+
+/** The flow stands at the first roots of a step: applies what happens there and restarts the flow. */
+ric_status contacts_meet(ric_trajectory *tr, ric_error *error);
+
+/** A step, or the part of it up to its first event, is over: contacts that are clear of zero have departed. */
+ric_status contacts_depart(ric_trajectory *tr, ric_error *error);
+
+/** Decides which of tr->settling persist and which open, and empties it. */
+ric_status contacts_settle(ric_trajectory *tr, ric_error *error);
+
+/** A held contact opens: shows it; contacts_forget_released then takes such out of the list of held ones. */
+void contact_release(ric_trajectory *tr, size_t obstacle);
+void contacts_forget_released(ric_trajectory *tr);
+
+/** Second derivative of a gap in the present state, with its own contact open. */
+ric_status gap_acceleration(ric_trajectory *tr, size_t obstacle, double *acceleration, ric_error *error);
+
+/** Whether the impacts of a contact that leaves with `rate` accumulate soon, and when: the time from now. */
+ric_status chatter_ahead(ric_trajectory *tr, size_t obstacle, double rate, bool *chatters, double *duration,
+                         ric_error *error);
+
+/** The threshold of gap rates in the present state. */
+double rest_rate(const ric_trajectory *tr);
+
+#endif

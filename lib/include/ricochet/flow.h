@@ -1,0 +1,80 @@
+/* Flows: the motion of a system between contacts, handed out as segments.
+ *
+ * A flow holds a time and a state and moves them in steps. A step is a polynomial per coordinate on its interval
+ * (segment.h), in one piece or, for long lattices, in several that follow each other in particles and are made when
+ * asked for. Whoever looks for contacts looks at the pieces, then accepts the step or a part of it:
+ *
+ *   ric_flow_start(flow, t, q, u, &error);
+ *   while (ric_flow_time(flow) < end) {
+ *     ric_flow_step(flow, end, &error);
+ *     for (size_t i = 0; i < ric_flow_pieces(flow); i++) { ric_segment s = ric_flow_piece(flow, i); ... }
+ *     ric_flow_accept(flow, 1);
+ *   }
+ *
+ * Two methods. `taylor`: Taylor series of lattices and M-C-K systems by recurrence, order and step from the tolerance.
+ * `cvodes`: SUNDIALS CVODES with Adams' formulas, for every system; its local polynomial is the segment. A flow knows
+ * no contact law; trajectories (trajectory.h) tell it which contacts persist and which Hertz contacts press. */
+#ifndef RICOCHET_FLOW_H
+#define RICOCHET_FLOW_H
+
+#include <stddef.h>
+
+#include "segment.h"
+#include "system.h"
+
+typedef enum ric_flow_method {
+  RIC_FLOW_AUTO,   /* taylor where there is one, else cvodes */
+  RIC_FLOW_TAYLOR, /* lattices and M-C-K systems */
+  RIC_FLOW_CVODES
+} ric_flow_method;
+
+typedef struct ric_flow_options {
+  ric_flow_method method; /* default auto */
+  double tolerance;       /* local error of a step relative to the size of the state; 1e-16 for taylor, 1e-12 for
+                             cvodes (0, the default, chooses these); in [1e-17, 1e-2] and [1e-14, 1e-2]. For cvodes
+                             both in root mean square over (q, u); a state smaller than 1e-3 counts as 1e-3 */
+  int order;              /* taylor: degree of the segments, 4 to 30; 0 (default): from the tolerance */
+  double step;            /* taylor: every step has this length; 0 (default): from the tolerance */
+  double longest_step;    /* default INFINITY */
+} ric_flow_options;
+
+RIC_API ric_flow_options ric_flow_options_default(void);
+
+typedef struct ric_flow ric_flow;
+
+/** @param system  borrowed, must outlive the flow
+ *  @param options  copied, NULL for the defaults
+ *  @returns RIC_EINVAL for options out of range and for taylor of a user system; RIC_ENOMEM. */
+RIC_API ric_status ric_flow_create(const ric_system *system, const ric_flow_options *options, ric_flow **flow,
+                                   ric_error *error);
+RIC_API void ric_flow_destroy(ric_flow **flow);
+
+/** Sets time and state; forgets all history. @param q, u  [n], [m], copied; finite, else RIC_EINVAL. */
+RIC_API ric_status ric_flow_start(ric_flow *flow, double t, const double *q, const double *u, ric_error *error);
+
+/** Makes a step from the current state towards `stop` and not beyond, backwards when stop lies before the time.
+ *  @returns RIC_EINVAL for a stop that is the flow's time; RIC_ENUMERIC when the motion blows up or the integrator
+ * gives up, RIC_ECALLBACK; time and state stay those before the step. */
+RIC_API ric_status ric_flow_step(ric_flow *flow, double stop, ric_error *error);
+
+/** Pieces of the step, and one of them; its coefficients stay valid until the next call for a piece. */
+RIC_API size_t ric_flow_pieces(const ric_flow *flow);
+RIC_API ric_segment ric_flow_piece(ric_flow *flow, size_t index);
+
+/** Moves time and state to position x of the step, 0 <= x <= 1; the step is used up. */
+RIC_API void ric_flow_accept(ric_flow *flow, double x);
+
+RIC_API double ric_flow_time(const ric_flow *flow);
+RIC_API double ric_flow_step_end(const ric_flow *flow); /* time at the end of the step */
+RIC_API const double *ric_flow_q(const ric_flow *flow); /* [n], valid until the next step, accept or start */
+RIC_API const double *ric_flow_u(const ric_flow *flow); /* [m] */
+
+/** What the flow has done since it was made. */
+typedef struct ric_flow_counts {
+  unsigned long long steps;
+  unsigned long long force_evaluations; /* calls of F, or of M and f; taylor: one per step */
+  unsigned long long starts;
+} ric_flow_counts;
+RIC_API ric_flow_counts ric_flow_counted(const ric_flow *flow);
+
+#endif

@@ -1,0 +1,45 @@
+/* Obstacles: where a coordinate of a lattice or of an M-C-K system may not go.
+ *
+ * Obstacle j stands at coordinate i(j) at `position` b and has a side: a floor (side +1) keeps q_i >= b, a wall
+ * (side -1) keeps q_i <= b. Its gap is h = side (q_i - b), its gap rate h' = side q'_i. A coordinate may have several.
+ *
+ * Rigid (stiffness infinite): an impact, h = 0 and h' < 0, gives h'+ = -e h'- with the restitution 0 <= e <= 1, and a
+ * contact that persists carries a force lambda >= 0 that holds the coordinate at b. Compliant (stiffness k finite): no
+ * jump, but Hertz's force k max(0, -h)^{3/2} that pushes the coordinate out [JAP]. */
+#ifndef RICOCHET_OBSTACLE_H
+#define RICOCHET_OBSTACLE_H
+
+#include <math.h>
+#include <stddef.h>
+
+#include "status.h"
+
+typedef struct ric_obstacle {
+  size_t coordinate;
+  int side;           /* +1: floor, -1: wall */
+  double position;    /* b, finite */
+  double restitution; /* e in [0, 1]; without meaning for a compliant obstacle */
+  double stiffness;   /* INFINITY: rigid; k > 0: Hertz's law */
+} ric_obstacle;
+
+/** A rigid floor with restitution 1. */
+static inline ric_obstacle ric_obstacle_floor(size_t coordinate, double position) {
+  return (ric_obstacle){coordinate, +1, position, 1, INFINITY};
+}
+
+/** A rigid wall with restitution 1. */
+static inline ric_obstacle ric_obstacle_wall(size_t coordinate, double position) {
+  return (ric_obstacle){coordinate, -1, position, 1, INFINITY};
+}
+
+/** Gap h of a coordinate's value q over the obstacle. */
+static inline double ric_obstacle_gap(const ric_obstacle *obstacle, double q) {
+  return obstacle->side * (q - obstacle->position);
+}
+
+/** @param coordinates  number of coordinates of the system
+ *  @returns RIC_EINVAL naming the first obstacle and field that is out of range. */
+RIC_API ric_status ric_obstacles_check(const ric_obstacle *obstacles, size_t count, size_t coordinates,
+                                       ric_error *error);
+
+#endif

@@ -1,0 +1,90 @@
+/* Obstacles at coordinates: their part of the model table, shared by lattices and M-C-K systems. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "system_model.h"
+
+/* Insertion of runs that are already in order costs O(count): obstacles are usually given so. */
+static void sort_by_coordinate(const ric_obstacle *obstacles, size_t *order, size_t *spare, size_t count) {
+  if (count < 2)
+    return;
+  size_t half = count / 2;
+  sort_by_coordinate(obstacles, order, spare, half);
+  sort_by_coordinate(obstacles, order + half, spare, count - half);
+  if (obstacles[order[half - 1]].coordinate <= obstacles[order[half]].coordinate)
+    return;
+  memcpy(spare, order, count * sizeof *order);
+  for (size_t i = 0, left = 0, right = half; i < count; i++) {
+    int from_left =
+        right == count || (left < half && obstacles[spare[left]].coordinate <= obstacles[spare[right]].coordinate);
+    order[i] = from_left ? spare[left++] : spare[right++];
+  }
+}
+
+ric_status system_take_obstacles(ric_system *s, const ric_obstacle *obstacles, size_t count, ric_error *error) {
+  RIC_TRY(ric_obstacles_check(obstacles, count, s->coordinates, error));
+  size_t *spare = malloc((count ? count : 1) * sizeof *spare);
+  s->obstacles = malloc((count ? count : 1) * sizeof *s->obstacles);
+  s->by_coordinate = malloc((count ? count : 1) * sizeof *s->by_coordinate);
+  if (!s->obstacles || !s->by_coordinate || !spare) {
+    free(spare);
+    return ric_fail(error, RIC_ENOMEM, "no memory for %zu obstacles", count);
+  }
+  s->obstacle_count = count;
+  for (size_t j = 0; j < count; j++) {
+    s->obstacles[j] = obstacles[j];
+    s->by_coordinate[j] = j;
+  }
+  sort_by_coordinate(s->obstacles, s->by_coordinate, spare, count);
+  free(spare);
+  return RIC_OK;
+}
+
+const char *obstacle_gap(const ric_system *s, size_t obstacle, double t, const double *q, double *gap) {
+  (void)t;
+  const ric_obstacle *o = &s->obstacles[obstacle];
+  *gap = ric_obstacle_gap(o, q[o->coordinate]);
+  return NULL;
+}
+
+const char *obstacle_gap_rate(const ric_system *s, size_t obstacle, double t, const double *q, const double *u,
+                              double *rate) {
+  (void)t;
+  (void)q;
+  *rate = s->obstacles[obstacle].side * u[s->obstacles[obstacle].coordinate];
+  return NULL;
+}
+
+const char *obstacle_gap_acceleration(const ric_system *s, size_t obstacle, double t, const double *q, const double *u,
+                                      const double *q_rate, const double *u_rate, double *acceleration) {
+  (void)t;
+  (void)q;
+  (void)u;
+  (void)q_rate;
+  *acceleration = s->obstacles[obstacle].side * u_rate[s->obstacles[obstacle].coordinate];
+  return NULL;
+}
+
+double obstacle_restitution(const ric_system *s, size_t obstacle) {
+  return s->obstacles[obstacle].restitution;
+}
+
+size_t system_first_obstacle(const ric_system *s, size_t coordinate) {
+  size_t low = 0, high = s->obstacle_count;
+  while (low < high) {
+    size_t middle = low + (high - low) / 2;
+    if (s->obstacles[s->by_coordinate[middle]].coordinate < coordinate)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  return low;
+}
+
+double hertz_force(double stiffness, double gap) {
+  return gap < 0 ? stiffness * -gap * sqrt(-gap) : 0; /* [JAP] Hertz */
+}
+
+double hertz_energy(double stiffness, double gap) {
+  return gap < 0 ? 0.4 * stiffness * gap * gap * sqrt(-gap) : 0;
+}

@@ -1,0 +1,14 @@
+/* The force on one particle of a lattice: internal to the library. */
+#ifndef RICOCHET_LATTICE_FORCE_H
+#define RICOCHET_LATTICE_FORCE_H
+
+#include "ricochet/lattice.h"
+
+/** Force on a particle at time t, positions q [n] and velocities v [n], without obstacles: its own spring, two links
+ *  and the forcing. O(1). */
+double lattice_force(const ric_lattice *lattice, size_t particle, double t, const double *q, const double *v);
+
+/** A bound of |s| over the roots e^{s t} of the linear part with its damping: the rate at which motions can change. */
+double lattice_rate_bound(const ric_lattice *lattice);
+
+#endif

@@ -1,0 +1,164 @@
+#include "lattice_system.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "lattice_force.h"
+
+typedef struct lattice_system {
+  ric_system base;
+  ric_lattice lattice;
+  double *masses, *force_cos, *force_sin; /* owned copies, NULL where the lattice has none */
+  ric_spring *on_sites, *links;
+} lattice_system;
+
+const ric_lattice *lattice_system_lattice(const ric_system *system) {
+  return &((const lattice_system *)(const void *)system)->lattice;
+}
+
+/* Force of a compliant obstacle on its coordinate: Hertz's law is zero where the gap is open. */
+static double push(const ric_obstacle *o, double q) {
+  return o->side * hertz_force(o->stiffness, ric_obstacle_gap(o, q));
+}
+
+/* Whether a compliant obstacle acts: by its state, or by the sign of its gap (in Hertz's law) when none are given. */
+static bool presses(const ric_obstacle *o, const unsigned char *contact, size_t obstacle) {
+  return contact ? contact[obstacle] == CONTACT_PRESSED : isfinite(o->stiffness);
+}
+
+static const char *rate(const ric_system *s, const unsigned char *contact, double t, const double *q, const double *u,
+                        double *q_rate, double *u_rate) {
+  const ric_lattice *lattice = lattice_system_lattice(s);
+  size_t n = s->coordinates;
+  memmove(q_rate, u, n * sizeof *u);
+  ric_lattice_acceleration(lattice, t, q, u, u_rate);
+  for (size_t j = 0; j < s->obstacle_count; j++) {
+    const ric_obstacle *o = &s->obstacles[j];
+    if (presses(o, contact, j))
+      u_rate[o->coordinate] += push(o, q[o->coordinate]) / ric_lattice_mass(lattice, o->coordinate);
+  }
+  for (size_t j = 0; contact && j < s->obstacle_count; j++)
+    if (contact[j] == CONTACT_HELD)
+      q_rate[s->obstacles[j].coordinate] = u_rate[s->obstacles[j].coordinate] = 0;
+  for (size_t i = 0; i < n; i++)
+    if (!isfinite(u_rate[i]))
+      return "an acceleration is not finite";
+  return NULL;
+}
+
+static const char *direction(const ric_system *s, size_t obstacle, double t, const double *q, contact_direction *d) {
+  const ric_obstacle *o = &s->obstacles[obstacle];
+  (void)t;
+  (void)q;
+  d->first = o->coordinate;
+  d->count = 1;
+  d->g[0] = o->side;
+  d->w[0] = o->side / ric_lattice_mass(lattice_system_lattice(s), o->coordinate);
+  d->offset = 0;
+  return NULL;
+}
+
+static const char *reaction(const ric_system *s, const unsigned char *contact, size_t obstacle, double t,
+                            const double *q, const double *u, double *lambda) {
+  const ric_obstacle *o = &s->obstacles[obstacle];
+  size_t i = o->coordinate;
+  double force = lattice_force(lattice_system_lattice(s), i, t, q, u);
+  for (size_t k = system_first_obstacle(s, i); k < s->obstacle_count; k++) {
+    size_t j = s->by_coordinate[k];
+    if (s->obstacles[j].coordinate != i)
+      break;
+    if (presses(&s->obstacles[j], contact, j))
+      force += push(&s->obstacles[j], q[i]);
+  }
+  *lambda = -o->side * force;
+  return NULL;
+}
+
+static const char *energy(const ric_system *s, double t, const double *q, const double *u, double *value) {
+  (void)t;
+  double sum = ric_lattice_energy(lattice_system_lattice(s), q, u);
+  for (size_t j = 0; j < s->obstacle_count; j++) {
+    const ric_obstacle *o = &s->obstacles[j];
+    if (isfinite(o->stiffness))
+      sum += hertz_energy(o->stiffness, ric_obstacle_gap(o, q[o->coordinate]));
+  }
+  *value = sum;
+  return NULL;
+}
+
+static void destroy(ric_system *system) {
+  lattice_system *s = (lattice_system *)(void *)system;
+  free(s->masses);
+  free(s->force_cos);
+  free(s->force_sin);
+  free(s->on_sites);
+  free(s->links);
+  free(s);
+}
+
+static const system_model model = {.rate = rate,
+                                   .gap = obstacle_gap,
+                                   .gap_rate = obstacle_gap_rate,
+                                   .gap_acceleration = obstacle_gap_acceleration,
+                                   .direction = direction,
+                                   .reaction = reaction,
+                                   .energy = energy,
+                                   .restitution = obstacle_restitution,
+                                   .destroy = destroy};
+
+/* Copies an array that may be NULL; false when there is no memory. */
+static bool copy(const void *from, size_t bytes, void **to) {
+  if (!from)
+    return true;
+  *to = malloc(bytes);
+  if (*to)
+    memcpy(*to, from, bytes);
+  return *to != NULL;
+}
+
+static bool copy_doubles(const double *from, size_t count, double **to) {
+  void *made = NULL;
+  bool ok = copy(from, count * sizeof *from, &made);
+  *to = made;
+  return ok;
+}
+
+static bool copy_springs(const ric_spring *from, size_t count, ric_spring **to) {
+  void *made = NULL;
+  bool ok = copy(from, count * sizeof *from, &made);
+  *to = made;
+  return ok;
+}
+
+static bool copy_arrays(lattice_system *s) {
+  ric_lattice *l = &s->lattice;
+  size_t n = l->particles;
+  bool ok = copy_doubles(l->masses, n, &s->masses) && copy_doubles(l->force_cos, n, &s->force_cos) &&
+            copy_doubles(l->force_sin, n, &s->force_sin) && copy_springs(l->on_sites, n, &s->on_sites) &&
+            copy_springs(l->links, n + 1, &s->links);
+  l->masses = s->masses;
+  l->force_cos = s->force_cos;
+  l->force_sin = s->force_sin;
+  l->on_sites = s->on_sites;
+  l->links = s->links;
+  return ok;
+}
+
+ric_status ric_system_create_lattice(const ric_lattice *lattice, const ric_obstacle *obstacles, size_t count,
+                                     ric_system **system, ric_error *error) {
+  *system = NULL;
+  RIC_TRY(ric_lattice_check(lattice, error));
+  size_t n = lattice->particles;
+  lattice_system *s = calloc(1, sizeof *s);
+  if (!s)
+    return ric_fail(error, RIC_ENOMEM, "no memory for a lattice of %zu particles", n);
+  s->base = (ric_system){.model = &model, .taylor = SYSTEM_LATTICE, .coordinates = n, .speeds = n, .uncoupled = true};
+  s->lattice = *lattice;
+  ric_system *made = &s->base;
+  ric_status status = copy_arrays(s) ? system_take_obstacles(made, obstacles, count, error)
+                                     : ric_fail(error, RIC_ENOMEM, "no memory for a lattice of %zu particles", n);
+  if (status != RIC_OK)
+    ric_system_destroy(&made);
+  *system = made;
+  return status;
+}

@@ -1,0 +1,87 @@
+/* What every model provides, and what is common to all systems: internal to the library.
+ *
+ * A model is a table of functions over a struct that begins with `ric_system`. Flows and the impact room see this table
+ * only; they never ask which model it is. Functions of a model return NULL, or what went wrong as a static text: a
+ * callback of the user failed, a value is not finite, a mass matrix is not positive definite. */
+#ifndef RICOCHET_SYSTEM_MODEL_H
+#define RICOCHET_SYSTEM_MODEL_H
+
+#include <stdbool.h>
+
+#include "ricochet/system.h"
+
+/** State of a contact, kept by the flow: one byte per obstacle. */
+typedef enum contact_state {
+  CONTACT_OPEN,   /* no force */
+  CONTACT_HELD,   /* rigid and persistent: a force lambda keeps the gap at zero */
+  CONTACT_PRESSED /* compliant: Hertz's force acts */
+} contact_state;
+
+/** How a unit impulse of a contact acts: speeds change by w, and the gap rate of a motion with speeds u is
+ *  g . u + offset. Both vanish outside the speeds [first, first + count). */
+typedef struct contact_direction {
+  size_t first, count;
+  double *g, *w; /* [count], in the caller's storage of [speeds] each; w = M^-1 g */
+  double offset;
+} contact_direction;
+
+typedef struct system_model {
+  /** Rates with the forces of contacts in the given states ([obstacles]; NULL: all open, Hertz by the sign of its gap).
+   */
+  const char *(*rate)(const ric_system *s, const unsigned char *contact, double t, const double *q, const double *u,
+                      double *q_rate, double *u_rate);
+  const char *(*gap)(const ric_system *s, size_t obstacle, double t, const double *q, double *gap);
+  const char *(*gap_rate)(const ric_system *s, size_t obstacle, double t, const double *q, const double *u,
+                          double *rate);
+  /** Second derivative of the gap along a motion with these rates of change. */
+  const char *(*gap_acceleration)(const ric_system *s, size_t obstacle, double t, const double *q, const double *u,
+                                  const double *q_rate, const double *u_rate, double *acceleration);
+  /** NULL for first-order systems, whose impacts are maps. */
+  const char *(*direction)(const ric_system *s, size_t obstacle, double t, const double *q, contact_direction *d);
+  /** State after an impact of first-order systems; NULL for all others. */
+  const char *(*impact)(const ric_system *s, size_t obstacle, double t, const double *x, double *x_after);
+  /** Force lambda of one held contact, given which contacts are held. */
+  const char *(*reaction)(const ric_system *s, const unsigned char *contact, size_t obstacle, double t, const double *q,
+                          const double *u, double *lambda);
+  const char *(*energy)(const ric_system *s, double t, const double *q, const double *u, double *energy);
+  double (*restitution)(const ric_system *s, size_t obstacle);
+  /** Frees what the model owns and the struct itself; obstacles are freed before. */
+  void (*destroy)(ric_system *s);
+} system_model;
+
+/** Which Taylor flow moves a system. */
+typedef enum system_taylor { SYSTEM_USER = 0, SYSTEM_LATTICE, SYSTEM_MCK } system_taylor;
+
+/** A model's struct begins with this. */
+struct ric_system {
+  const system_model *model;
+  system_taylor taylor;
+  size_t coordinates, speeds, obstacle_count;
+  /** Obstacles at coordinates, in the order given; NULL for user systems, whose gaps are callbacks. */
+  ric_obstacle *obstacles;
+  /** Indices of `obstacles` in order of coordinate [obstacle_count]; NULL for user systems. */
+  size_t *by_coordinate;
+  /** Contacts never change each other's gap rates: impulses and forces follow contact by contact. True for diagonal
+   *  masses with obstacles at coordinates. */
+  bool uncoupled;
+};
+
+/** Copies, checks and sorts the obstacles at coordinates of a system. */
+ric_status system_take_obstacles(ric_system *s, const ric_obstacle *obstacles, size_t count, ric_error *error);
+
+/** Functions of the table for obstacles at coordinates: shared by lattices and M-C-K systems. */
+const char *obstacle_gap(const ric_system *s, size_t obstacle, double t, const double *q, double *gap);
+const char *obstacle_gap_rate(const ric_system *s, size_t obstacle, double t, const double *q, const double *u,
+                              double *rate);
+const char *obstacle_gap_acceleration(const ric_system *s, size_t obstacle, double t, const double *q, const double *u,
+                                      const double *q_rate, const double *u_rate, double *acceleration);
+double obstacle_restitution(const ric_system *s, size_t obstacle);
+
+/** First position in by_coordinate whose obstacle has a coordinate >= `coordinate`. */
+size_t system_first_obstacle(const ric_system *s, size_t coordinate);
+
+/** Hertz's force k max(0, -gap)^{3/2}, and its potential. */
+double hertz_force(double stiffness, double gap);
+double hertz_energy(double stiffness, double gap);
+
+#endif

@@ -1,0 +1,36 @@
+#include "user_callback.h"
+
+#include <math.h>
+
+const char *callback_check(int code, const double *x, size_t count, const char *failed, const char *not_finite) {
+  if (code != 0)
+    return failed;
+  return all_finite(x, count) ? NULL : not_finite;
+}
+
+bool all_finite(const double *x, size_t count) {
+  for (size_t i = 0; i < count; i++)
+    if (!isfinite(x[i]))
+      return false;
+  return true;
+}
+
+double largest(const double *x, size_t count) {
+  double most = 0;
+  for (size_t i = 0; i < count; i++)
+    most = fmax(most, fabs(x[i]));
+  return most;
+}
+
+const char *path_derivative(const char *(*value)(void *path, double s, double *value), void *path, double step,
+                            double *derivative) {
+  double slope[2];
+  for (int k = 0; k < 2; k++, step /= 2) {
+    double above, below;
+    TRY_TEXT(value(path, step, &above));
+    TRY_TEXT(value(path, -step, &below));
+    slope[k] = (above - below) / (2 * step);
+  }
+  *derivative = slope[1] + (slope[1] - slope[0]) / 3;
+  return NULL;
+}

@@ -1,0 +1,32 @@
+/* Callbacks of user systems: what their answers are checked for, and derivatives along a path by differences. */
+#ifndef RICOCHET_USER_CALLBACK_H
+#define RICOCHET_USER_CALLBACK_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+/** Returns what went wrong (a static text) to the caller. */
+#define TRY_TEXT(call)                                                                                                 \
+  do {                                                                                                                 \
+    const char *try_text = (call);                                                                                     \
+    if (try_text)                                                                                                      \
+      return try_text;                                                                                                 \
+  } while (0)
+
+/** The texts of a callback that returned non-zero, and of one whose values are not finite. */
+#define CALLBACK_TEXTS(name) "the " name " callback failed", "the " name " callback gave a value that is not finite"
+
+/** NULL, or the text that applies to a callback that returned `code` and filled x [count]. */
+const char *callback_check(int code, const double *x, size_t count, const char *failed, const char *not_finite);
+
+bool all_finite(const double *x, size_t count);
+
+/** Largest absolute value of x [count]; 0 for none. */
+double largest(const double *x, size_t count);
+
+/** Derivative at s = 0 of a function of one variable: central differences with steps `step` and half of it, Richardson
+ *  extrapolated, error step^4 / 480 times the fifth derivative. Four calls; the value at 0 is not asked for. */
+const char *path_derivative(const char *(*value)(void *path, double s, double *value), void *path, double step,
+                            double *derivative);
+
+#endif

@@ -1,0 +1,109 @@
+#include "recorded.h"
+
+#include "support.h"
+
+static int keep(const ric_event *event, void *user) {
+  recorded *r = user;
+  if (r->count == r->capacity) {
+    r->capacity = r->capacity ? 2 * r->capacity : 64;
+    r->events = realloc(r->events, r->capacity * sizeof *r->events);
+    assert_non_null(r->events);
+  }
+  r->events[r->count++] = *event;
+  return 0;
+}
+
+static double *copy(const double *x, size_t count) {
+  double *y = calloc(count ? count : 1, sizeof *y);
+  assert_non_null(y);
+  if (count)
+    memcpy(y, x, count * sizeof *y);
+  return y;
+}
+
+static void require(ric_status status, const ric_error *error) {
+  if (status != RIC_OK)
+    fail_msg("%s", error->message);
+}
+
+recorded record(const ric_system *system, const ric_trajectory_options *options, const double *q, const double *u,
+                double end) {
+  recorded r = {.coordinates = ric_system_coordinates(system), .speeds = ric_system_speeds(system)};
+  ric_observer observer = {.event = keep, .user = &r};
+  ric_trajectory *trajectory = NULL;
+  ric_error error = {0};
+  require(ric_trajectory_create(system, options, &trajectory, &error), &error);
+  require(ric_trajectory_start(trajectory, 0, q, u, &error), &error);
+  require(ric_trajectory_run(trajectory, end, &observer, &r.run, &error), &error);
+  r.q = copy(ric_trajectory_q(trajectory), r.coordinates);
+  r.u = copy(ric_trajectory_u(trajectory), r.speeds);
+  ric_trajectory_destroy(&trajectory);
+  return r;
+}
+
+void recorded_clear(recorded *r) {
+  free(r->events);
+  free(r->q);
+  free(r->u);
+  *r = (recorded){0};
+}
+
+size_t recorded_impacts(const recorded *r) {
+  size_t impacts = 0;
+  for (size_t i = 0; i < r->count; i++)
+    impacts += ric_event_jumps(&r->events[i]) != 0;
+  return impacts;
+}
+
+const ric_event *recorded_first(const recorded *r, ric_event_kind kind) {
+  for (size_t i = 0; i < r->count; i++)
+    if (r->events[i].kind == kind)
+      return &r->events[i];
+  return NULL;
+}
+
+static double difference(const double *a, const double *b, size_t count) {
+  double largest = 0;
+  for (size_t i = 0; i < count; i++)
+    largest = fmax(largest, fabs(a[i] - b[i]));
+  return largest;
+}
+
+double recorded_difference(const recorded *a, const recorded *b) {
+  return fmax(difference(a->q, b->q, a->coordinates), difference(a->u, b->u, a->speeds));
+}
+
+double growth_of(const ric_system *system, const double *q, const double *u, double end) {
+  size_t n = ric_system_coordinates(system), m = ric_system_speeds(system);
+  double shift = 1e-8, sum = 0, *moved = calloc(n + m, sizeof *moved);
+  assert_non_null(moved);
+  recorded there = record(system, NULL, q, u, end);
+  for (size_t k = 0; k < n + m; k++) {
+    memcpy(moved, q, n * sizeof *q);
+    memcpy(moved + n, u, m * sizeof *u);
+    moved[k] += shift;
+    recorded near = record(system, NULL, moved, moved + n, end);
+    sum += recorded_difference(&near, &there) / shift;
+    recorded_clear(&near);
+  }
+  recorded_clear(&there);
+  free(moved);
+  return fmax(sum, 1);
+}
+
+ric_system *lattice_system(const ric_lattice *lattice, const ric_obstacle *obstacles, size_t count) {
+  ric_system *system = NULL;
+  ric_error error = {0};
+  require(ric_system_create_lattice(lattice, obstacles, count, &system, &error), &error);
+  return system;
+}
+
+ric_system *falling_ball(double restitution) {
+  static const double weight[] = {-1};
+  ric_lattice ball = ric_lattice_default(1, RIC_ENDS_FREE);
+  ric_obstacle floor = ric_obstacle_floor(0, 0);
+  ball.on_site = (ric_spring){0};
+  ball.force_cos = weight; /* of frequency 0 */
+  floor.restitution = restitution;
+  return lattice_system(&ball, &floor, 1);
+}

@@ -1,0 +1,133 @@
+/* Accumulating impacts: closed forms, and runs that follow more of the series. */
+#include "support.h"
+
+#include "recorded.h"
+
+/* From height h the first impact comes at sqrt(2 h) and the last at sqrt(2 h) (1 + e) / (1 - e). */
+static void ball_on_a_fixed_table_rests_at_the_closed_form(void **state) {
+  (void)state;
+  for (int i = 1; i <= 9; i++) {
+    double e = 0.1 * i, height = 0.7, last = sqrt(2 * height) * (1 + e) / (1 - e);
+    ric_system *ball = falling_ball(e);
+    recorded r = record(ball, NULL, &height, (double[]){0}, last + 5);
+    const ric_event *chatter = recorded_first(&r, RIC_EVENT_CHATTER), *rest = recorded_first(&r, RIC_EVENT_REST);
+    assert_non_null(chatter);
+    assert_non_null(rest);
+    assert_close(chatter->accumulation, last, 2e-14 * last / (1 - e));
+    assert_close(rest->time, chatter->accumulation, 1e-15 * last);
+    assert_true(r.events[r.count - 1].kind == RIC_EVENT_REST);
+    assert_int_equal(r.run.outcome, RIC_RUN_COMPLETED);
+    assert_true(r.q[0] == 0 && r.u[0] == 0);
+    recorded_clear(&r);
+    ric_system_destroy(&ball);
+  }
+}
+
+/* Impacts before the summed-up ones shrink by e from one to the next. */
+static void impact_speeds_shrink_by_the_restitution(void **state) {
+  (void)state;
+  double e = 0.6, height = 1;
+  ric_system *ball = falling_ball(e);
+  recorded r = record(ball, NULL, &height, (double[]){0}, 10);
+  double speed = sqrt(2);
+  for (size_t i = 0; i < recorded_impacts(&r); i++, speed *= e)
+    assert_close(r.events[i].gap_rate, -speed, 1e-14);
+  recorded_clear(&r);
+  ric_system_destroy(&ball);
+}
+
+/* A mass on a spring over a floor above its equilibrium: the acceleration changes between impacts. */
+static recorded pressed_mass(double chatter_tol, double end) {
+  ric_lattice mass = ric_lattice_default(1, RIC_ENDS_FREE);
+  ric_obstacle floor = ric_obstacle_floor(0, 0.5);
+  ric_trajectory_options options = ric_trajectory_options_default();
+  floor.restitution = 0.5;
+  options.chatter_tol = chatter_tol;
+  ric_system *system = lattice_system(&mass, &floor, 1);
+  recorded r = record(system, &options, (double[]){1}, (double[]){0.3}, end);
+  ric_system_destroy(&system);
+  return r;
+}
+
+static void accumulation_converges_with_the_duration_left_out(void **state) {
+  (void)state;
+  recorded witness = pressed_mass(1e-7, 10);
+  double last = recorded_first(&witness, RIC_EVENT_CHATTER)->accumulation, error[3], tolerance[3] = {1e-1, 1e-2, 1e-3};
+  for (int k = 0; k < 3; k++) {
+    recorded r = pressed_mass(tolerance[k], 10);
+    const ric_event *chatter = recorded_first(&r, RIC_EVENT_CHATTER);
+    error[k] = fabs(chatter->accumulation - last);
+    double duration = chatter->accumulation - chatter->time;
+    assert_true(duration <= 1.01 * tolerance[k]);
+    assert_true(error[k] <= duration * duration * duration); /* the first order in the jerk is summed exactly */
+    assert_close(r.q[0], 0.5, 0);
+    recorded_clear(&r);
+  }
+  recorded_clear(&witness);
+}
+
+/* A mass pressed to a floor by its spring (0.5 at the floor) and shaken with 0.8 sin(2 t): it chatters to rest where
+ * the sine is low and is thrown off where it is high. */
+static recorded shaken_mass(double chatter_tol, double events_per_time) {
+  double shaking = 0.8;
+  ric_lattice mass = ric_lattice_default(1, RIC_ENDS_FREE);
+  ric_obstacle floor = ric_obstacle_floor(0, 0.5);
+  ric_trajectory_options options = ric_trajectory_options_default();
+  mass.frequency = 2;
+  mass.force_sin = &shaking;
+  floor.restitution = 0.2;
+  options.chatter_tol = chatter_tol;
+  options.events_per_time = events_per_time;
+  ric_system *system = lattice_system(&mass, &floor, 1);
+  recorded r = record(system, &options, (double[]){0.9}, (double[]){-0.2}, 40);
+  ric_system_destroy(&system);
+  return r;
+}
+
+static void shaken_mass_agrees_with_a_run_that_follows_the_series_further(void **state) {
+  (void)state;
+  recorded r = shaken_mass(1e-4, 1e5), witness = shaken_mass(1e-7, 4e5);
+  size_t next = 0, compared = 0;
+  for (size_t i = 0; i < r.count; i++) {
+    ric_event_kind kind = r.events[i].kind;
+    if (kind != RIC_EVENT_REST && kind != RIC_EVENT_RELEASE)
+      continue;
+    while (next < witness.count && witness.events[next].kind != kind)
+      next++;
+    assert_true(next < witness.count);
+    assert_close(r.events[i].time, witness.events[next++].time, 1e-11);
+    compared++;
+  }
+  assert_true(compared >= 4);
+  assert_true(recorded_difference(&r, &witness) <= 1e-11);
+  recorded_clear(&r);
+  recorded_clear(&witness);
+}
+
+/* With the summation off, the event limit ends the run and keeps the state. */
+static void without_summation_the_event_limit_ends_the_run(void **state) {
+  (void)state;
+  ric_system *ball = falling_ball(0.5);
+  ric_trajectory_options options = ric_trajectory_options_default();
+  options.chatter_tol = 0;
+  options.rest_tol = 0;
+  options.events_per_time = 20;
+  recorded r = record(ball, &options, (double[]){1}, (double[]){0}, 10);
+  assert_int_equal(r.run.outcome, RIC_RUN_EVENT_LIMIT);
+  assert_non_null(strstr(r.run.reason, "events at more than 20 times"));
+  assert_true(r.run.time > 4 && r.run.time < 3 * sqrt(2) + 1e-9);
+  assert_close(r.q[0], 0, 1e-9);
+  recorded_clear(&r);
+  ric_system_destroy(&ball);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(ball_on_a_fixed_table_rests_at_the_closed_form),
+      cmocka_unit_test(impact_speeds_shrink_by_the_restitution),
+      cmocka_unit_test(accumulation_converges_with_the_duration_left_out),
+      cmocka_unit_test(shaken_mass_agrees_with_a_run_that_follows_the_series_further),
+      cmocka_unit_test(without_summation_the_event_limit_ends_the_run),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

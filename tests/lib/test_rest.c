@@ -1,0 +1,144 @@
+/* Persistent contacts: when they begin, what they carry, when they open. */
+#include "support.h"
+
+#include "recorded.h"
+
+static const double pi = 3.14159265358979323846;
+
+/* A mass that rests on a floor at 0.5, pressed by its spring with 0.5, under the force a sin(w t): it lifts off when
+ * a sin(w t) = 0.5. */
+static void release_time_under_harmonic_force_is_the_closed_form(void **state) {
+  (void)state;
+  for (int k = 0; k < 8; k++) {
+    double amplitude = 0.55 + 0.3 * k, frequency = 0.3 + 0.4 * k;
+    ric_lattice mass = ric_lattice_default(1, RIC_ENDS_FREE);
+    ric_obstacle floor = ric_obstacle_floor(0, 0.5);
+    mass.frequency = frequency;
+    mass.force_sin = &amplitude;
+    floor.restitution = 0.3;
+    ric_system *system = lattice_system(&mass, &floor, 1);
+    double lift = asin(0.5 / amplitude) / frequency;
+    recorded r = record(system, NULL, (double[]){0.5}, (double[]){0}, lift + 0.1 / frequency);
+    assert_int_equal(r.count, 2);
+    assert_int_equal(r.events[0].kind, RIC_EVENT_REST);
+    assert_true(r.events[0].time == 0);
+    assert_int_equal(r.events[1].kind, RIC_EVENT_RELEASE);
+    assert_close(r.events[1].time, lift, 1e-14 / frequency);
+    assert_true(r.q[0] > 0.5 && r.u[0] > 0);
+    recorded_clear(&r);
+    ric_system_destroy(&system);
+  }
+}
+
+/* After the release the motion is that of a free mass that starts from rest there. */
+static void released_mass_moves_freely(void **state) {
+  (void)state;
+  double amplitude = 0.8, lift = asin(0.5 / amplitude), after = 0.6;
+  ric_lattice mass = ric_lattice_default(1, RIC_ENDS_FREE);
+  ric_obstacle floor = ric_obstacle_floor(0, 0.5);
+  mass.on_site = (ric_spring){.linear = 4};
+  floor.position = 0.125;
+  mass.frequency = 1;
+  mass.force_sin = &amplitude;
+  ric_system *system = lattice_system(&mass, &floor, 1);
+  recorded r = record(system, NULL, (double[]){0.125}, (double[]){0}, lift + after);
+  /* q = p sin t + a cos 2(t - lift) + b sin 2(t - lift), p = amplitude / 3 */
+  double p = amplitude / 3, a = 0.125 - p * sin(lift), b = -p * cos(lift) / 2;
+  assert_close(r.q[0], p * sin(lift + after) + a * cos(2 * after) + b * sin(2 * after), 1e-14);
+  assert_close(r.u[0], p * cos(lift + after) - 2 * a * sin(2 * after) + 2 * b * cos(2 * after), 1e-14);
+  recorded_clear(&r);
+  ric_system_destroy(&system);
+}
+
+enum { CHAIN = 12 };
+
+static ric_system *pressed_chain(double restitution) {
+  ric_obstacle floors[CHAIN];
+  ric_lattice chain = ric_lattice_default(CHAIN, RIC_ENDS_FIXED);
+  chain.link.linear = 0.2;
+  for (size_t i = 0; i < CHAIN; i++) {
+    floors[i] = ric_obstacle_floor(i, 0.1);
+    floors[i].restitution = restitution;
+  }
+  return lattice_system(&chain, floors, CHAIN);
+}
+
+static void chain_with_losses_comes_to_rest(void **state) {
+  (void)state;
+  ric_system *system = pressed_chain(0.5);
+  double q[CHAIN], u[CHAIN];
+  for (size_t i = 0; i < CHAIN; i++) {
+    q[i] = 0.2 + 0.05 * (double)i;
+    u[i] = i % 2 ? -0.1 : 0.3;
+  }
+  recorded r = record(system, NULL, q, u, 60);
+  assert_int_equal(r.run.outcome, RIC_RUN_COMPLETED);
+  for (size_t i = 0; i < CHAIN; i++)
+    assert_true(r.q[i] == 0.1 && r.u[i] == 0);
+  double at_rest[CHAIN], zero[CHAIN] = {0};
+  for (size_t i = 0; i < CHAIN; i++)
+    at_rest[i] = 0.1;
+  assert_close(r.run.energy_end, ric_system_energy(system, 0, at_rest, zero), 1e-16);
+  assert_close(r.run.energy_start - r.run.impact_loss, r.run.energy_end, 1e-14);
+  assert_int_equal(r.run.events[RIC_EVENT_REST], CHAIN + r.run.events[RIC_EVENT_RELEASE]);
+  recorded_clear(&r);
+  ric_system_destroy(&system);
+}
+
+/* e = 0: every impact ends in rest or in leaving with rate zero. */
+static void plastic_impacts_stick_at_once(void **state) {
+  (void)state;
+  ric_system *system = pressed_chain(0);
+  double q[CHAIN], u[CHAIN] = {0};
+  for (size_t i = 0; i < CHAIN; i++)
+    q[i] = 0.2 + 0.1 * (double)(i % 3);
+  recorded r = record(system, NULL, q, u, 40);
+  for (size_t i = 0; i + 1 < r.count; i++)
+    if (r.events[i].kind == RIC_EVENT_TRANSVERSAL)
+      assert_true(r.events[i].gap_rate_end == 0);
+  for (size_t i = 0; i < CHAIN; i++)
+    assert_true(r.q[i] == 0.1 && r.u[i] == 0);
+  recorded_clear(&r);
+  ric_system_destroy(&system);
+}
+
+/* A mass held between a floor and the pull of its neighbour opens when the neighbour has moved far enough. */
+static void neighbour_lifts_a_resting_mass(void **state) {
+  (void)state;
+  ric_lattice pair = ric_lattice_default(2, RIC_ENDS_FREE);
+  ric_obstacle floor = ric_obstacle_floor(0, 0.2);
+  pair.link.linear = 0.5;
+  ric_system *system = lattice_system(&pair, &floor, 1);
+  /* The force on mass 0 is -0.2 + 0.5 (q1 - 0.2) = 0 at q1 = 0.6; q1'' = -q1 - 0.5 (q1 - 0.2) while 0 rests. */
+  double omega = sqrt(1.5), centre = 0.1 / 1.5, speed = 1.2;
+  recorded r = record(system, NULL, (double[]){0.2, centre}, (double[]){0, speed}, 0.9);
+  const ric_event *release = recorded_first(&r, RIC_EVENT_RELEASE);
+  assert_non_null(release);
+  assert_close(release->time, asin((0.6 - centre) * omega / speed) / omega, 1e-14);
+  recorded_clear(&r);
+  ric_system_destroy(&system);
+}
+
+/* With e = 1 a mass that is put on the floor with no speed rests; it does not bounce. */
+static void elastic_floor_holds_a_mass_put_down_on_it(void **state) {
+  (void)state;
+  ric_system *ball = falling_ball(1);
+  recorded r = record(ball, NULL, (double[]){0}, (double[]){0}, 2 * pi);
+  assert_int_equal(r.count, 1);
+  assert_int_equal(r.events[0].kind, RIC_EVENT_REST);
+  assert_true(r.q[0] == 0 && r.u[0] == 0);
+  recorded_clear(&r);
+  ric_system_destroy(&ball);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(release_time_under_harmonic_force_is_the_closed_form),
+      cmocka_unit_test(released_mass_moves_freely),
+      cmocka_unit_test(chain_with_losses_comes_to_rest),
+      cmocka_unit_test(plastic_impacts_stick_at_once),
+      cmocka_unit_test(neighbour_lifts_a_resting_mass),
+      cmocka_unit_test(elastic_floor_holds_a_mass_put_down_on_it),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

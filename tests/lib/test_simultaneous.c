@@ -1,0 +1,146 @@
+/* Impacts at one time: what does not couple commutes; what does is solved together and says so. */
+#include "support.h"
+
+#include "recorded.h"
+#include "scenario/random_source.h"
+
+enum { N = 6 };
+
+static ric_system *chain_over_floors(const double *floors) {
+  ric_obstacle obstacles[N];
+  ric_lattice chain = ric_lattice_default(N, RIC_ENDS_PERIODIC);
+  chain.link.linear = 0.3;
+  for (size_t i = 0; i < N; i++) {
+    obstacles[i] = ric_obstacle_floor(i, floors[i]);
+    obstacles[i].restitution = 0.9;
+  }
+  return lattice_system(&chain, obstacles, N);
+}
+
+/* All particles move alike: q = cos t, and reach the floor at -0.5 together. */
+static recorded fall_together(const double *delays) {
+  double floors[N], q[N], u[N] = {0};
+  for (size_t i = 0; i < N; i++) {
+    floors[i] = -0.5 - delays[i] * sqrt(0.75); /* reached later by the delay */
+    q[i] = 1;
+  }
+  ric_system *system = chain_over_floors(floors);
+  recorded r = record(system, NULL, q, u, 3);
+  ric_system_destroy(&system);
+  return r;
+}
+
+static void shuffle(random_source *source, double *x) {
+  for (size_t i = N - 1; i > 0; i--) {
+    size_t j = random_below(source, i + 1);
+    double swap = x[i];
+    x[i] = x[j];
+    x[j] = swap;
+  }
+}
+
+static void uncoupled_impacts_at_one_time_are_simultaneous(void **state) {
+  (void)state;
+  recorded r = fall_together((double[N]){0});
+  assert_int_equal(r.count, N);
+  for (size_t i = 0; i < N; i++) {
+    assert_int_equal(r.events[i].kind, RIC_EVENT_SIMULTANEOUS);
+    assert_int_equal(r.events[i].obstacle, i);
+    assert_true(r.events[i].time == r.events[0].time);
+    assert_close(r.events[i].gap_rate, -sqrt(0.75), 1e-15);
+  }
+  recorded_clear(&r);
+}
+
+/* The positions differ by the delays, 1e-12 at most 6 times, and speeds by what forces do in that time. */
+static void every_order_of_split_impacts_agrees_with_the_simultaneous_ones(void **state) {
+  (void)state;
+  random_source source = {.state = 3};
+  recorded together = fall_together((double[N]){0});
+  double delays[N] = {0, 1e-12, 2e-12, 3e-12, 4e-12, 5e-12};
+  for (int order = 0; order < 200; order++) {
+    shuffle(&source, delays);
+    recorded r = fall_together(delays);
+    assert_int_equal(r.count, N);
+    assert_true(recorded_difference(&r, &together) <= 3e-11);
+    recorded_clear(&r);
+  }
+  recorded_clear(&together);
+}
+
+/* Two masses that share inertia, M = [[2, 1], [1, 2]], both at their floors. */
+static ric_system *coupled_pair(double restitution, size_t obstacles) {
+  static const double mass[] = {2, 1, 1, 2}, stiffness[] = {1, 0, 0, 1};
+  ric_mck pair = {.coordinates = 2, .mass.values = mass, .stiffness.values = stiffness};
+  ric_obstacle floors[2] = {ric_obstacle_floor(0, 0), ric_obstacle_floor(1, 0)};
+  ric_system *system = NULL;
+  floors[0].restitution = floors[1].restitution = restitution;
+  assert_int_equal(ric_system_create_mck(&pair, floors, obstacles, &system, NULL), RIC_OK);
+  return system;
+}
+
+/* M^-1 = [[2, -1], [-1, 2]] / 3: p = (1 + e) / (1/3) each, and both rates turn around. */
+static void coupled_impacts_solve_newtons_law_together(void **state) {
+  (void)state;
+  for (int k = 0; k <= 4; k++) {
+    double e = 0.25 * k;
+    ric_system *system = coupled_pair(e, 2);
+    recorded r = record(system, NULL, (double[]){0, 0}, (double[]){-1, -1}, 0);
+    size_t impacts = recorded_impacts(&r);
+    assert_int_equal(impacts, 2);
+    for (size_t i = 0; i < 2; i++) {
+      assert_int_equal(r.events[i].kind, RIC_EVENT_COUPLED);
+      assert_close(r.events[i].impulse, 3 * (1 + e), 1e-14);
+      assert_close(r.u[i], e, 1e-15);
+    }
+    assert_close(r.run.impact_loss, 3 * (1 - e * e), 1e-14);
+    recorded_clear(&r);
+    ric_system_destroy(&system);
+  }
+}
+
+/* In sequence, 0 then 1, e = 1 (docs/theory.md with c = -1/2): rates (1 + 2 c - 4 c^2, 1 - 2 c) = (-1, 2) against (1,
+ * 1) together: another outcome, and 0 would have to hit again. */
+static void coupled_impacts_differ_from_impacts_in_sequence(void **state) {
+  (void)state;
+  ric_system *first = coupled_pair(1, 1);
+  recorded r = record(first, NULL, (double[]){0, 1}, (double[]){-1, -1}, 0);
+  assert_int_equal(recorded_impacts(&r), 1);
+  assert_close(r.u[0], 1, 1e-15);
+  assert_close(r.u[1], -2, 1e-15); /* driven into its floor by the impulse on 0: then p_1 = 2 * 2 / (2/3) = 6 */
+  double after_both[2] = {r.u[0] - 6.0 / 3, r.u[1] + 2 * 6.0 / 3};
+  assert_close(after_both[0], -1, 1e-14);
+  assert_close(after_both[1], 2, 1e-14);
+  recorded_clear(&r);
+  ric_system_destroy(&first);
+}
+
+/* An impact that reaches a contact at rest through the mass matrix: M^-1 = [[2, 1], [1, 2]] / 3. */
+static void impulse_reaches_a_contact_at_rest(void **state) {
+  (void)state;
+  static const double mass[] = {2, -1, -1, 2}, stiffness[] = {1, 0, 0, 1};
+  ric_mck pair = {.coordinates = 2, .mass.values = mass, .stiffness.values = stiffness};
+  ric_obstacle sides[2] = {ric_obstacle_floor(0, 0.3), ric_obstacle_wall(1, 0.5)};
+  ric_system *system = NULL;
+  assert_int_equal(ric_system_create_mck(&pair, sides, 2, &system, NULL), RIC_OK);
+  recorded r = record(system, NULL, (double[]){0.3, 0}, (double[]){0, 1}, 1.2);
+  const ric_event *rest = recorded_first(&r, RIC_EVENT_REST), *hit = recorded_first(&r, RIC_EVENT_COUPLED);
+  assert_non_null(rest);
+  assert_non_null(hit);
+  assert_int_equal(rest->obstacle, 0);
+  assert_true(r.run.events[RIC_EVENT_COUPLED] >= 2); /* the hit on the wall, and the floor that bears its impulse */
+  assert_close(r.run.energy_end, r.run.energy_start - r.run.impact_loss, 1e-13);
+  recorded_clear(&r);
+  ric_system_destroy(&system);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(uncoupled_impacts_at_one_time_are_simultaneous),
+      cmocka_unit_test(every_order_of_split_impacts_agrees_with_the_simultaneous_ones),
+      cmocka_unit_test(coupled_impacts_solve_newtons_law_together),
+      cmocka_unit_test(coupled_impacts_differ_from_impacts_in_sequence),
+      cmocka_unit_test(impulse_reaches_a_contact_at_rest),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
