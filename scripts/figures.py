@@ -5,6 +5,7 @@ give (no states, another number of swept parameters) is a FigureError: one line 
 """
 
 import argparse
+import contextlib
 import os
 import re
 import sys
@@ -87,6 +88,15 @@ class Study:
         """The items of a key that holds a list, in either of YAML's forms; empty if there is none."""
         found = re.search(rf"\b{key}:\s*(?:\[([^\]]*)\]|((?:\s*-\s+\S+[ \t]*\n)+))", self.body)
         return re.findall(r"[^\s,]+", re.sub(r"\s-\s", " ", found[1] or found[2] or "")) if found else []
+
+    def chain(self, particles):
+        """The kind of chain and its number of particles in words."""
+        ends = {
+            "periodic": "ring of {} particles",
+            "fixed": "{} particles, fixed ends",
+            "free": "{} particles, free ends",
+        }
+        return ends.get(self.word("ends"), "{} particles").format(particles)
 
     def number(self, key):
         """A number, also as a multiple of pi, as mathematical text; None if the key holds anything else."""
@@ -199,13 +209,7 @@ class Result:
 
     def subtitle(self):
         """The fixed parameters in one line, from the study."""
-        ends = {
-            "periodic": "ring of {} particles",
-            "fixed": "{} particles, fixed ends",
-            "free": "{} particles, free ends",
-        }
-        chain = ends.get(self.study.word("ends"), "{} particles")
-        parts = [chain.format(self.study.word("particles") or "?")]
+        parts = [self.study.chain(self.study.word("particles") or "?")]
         for name, symbol in PARAMETER_SYMBOL.items():
             number = self.study.number(name.split(".")[1])
             if number and name not in self.names:
@@ -349,19 +353,25 @@ def save(figure, stem):
     plt.close(figure)
 
 
-def open_result(path):
-    if not os.path.isfile(path):
-        raise FigureError("no such file")
+@contextlib.contextmanager
+def readable():
+    """Turns what HDF5 says about a damaged or foreign file into one line."""
     try:
-        with h5py.File(path, "r") as file:
-            return Result(file)
+        yield
     except (OSError, KeyError, RuntimeError) as trouble:
         first_line = (str(trouble).splitlines() or [""])[0]
         raise FigureError(f"not a readable result: {first_line}") from trouble
 
 
-def run(draw, suffix, description, add_options=None):
-    """The main function of a script: options, result, `draw(result, options)`, both files."""
+def open_result(path):
+    if not os.path.isfile(path):
+        raise FigureError("no such file")
+    with readable(), h5py.File(path, "r") as file:
+        return Result(file)
+
+
+def make_parser(suffix, description, files="STEM.png and STEM.svg"):
+    """The options that all scripts have."""
     parser = argparse.ArgumentParser(
         description=description, formatter_class=argparse.RawDescriptionHelpFormatter
     )
@@ -370,17 +380,32 @@ def run(draw, suffix, description, add_options=None):
         "-o",
         "--output",
         metavar="STEM",
-        help=f"write STEM.png and STEM.svg; default: RESULT_{suffix}, beside the result",
+        help=f"write {files}; default: RESULT_{suffix}, beside the result",
     )
-    if add_options:
-        add_options(parser)
-    options = parser.parse_args()
+    return parser
+
+
+def stem_of(options, suffix):
     stem = options.output or os.path.splitext(options.result)[0] + "_" + suffix
-    stem = re.sub(r"\.(png|svg)$", "", stem)
+    return re.sub(r"\.(png|svg)$", "", stem)
+
+
+def exit_code(options, action):
+    """Runs `action()` in the figures' style; a FigureError is one line on stderr."""
     set_style()
     try:
-        save(draw(open_result(options.result), options), stem)
+        action()
     except FigureError as trouble:
         print(f"{os.path.basename(sys.argv[0])}: {options.result}: {trouble}", file=sys.stderr)
         return 2
     return 0
+
+
+def run(draw, suffix, description, add_options=None):
+    """The main function of a script: options, result, `draw(result, options)`, both files."""
+    parser = make_parser(suffix, description)
+    if add_options:
+        add_options(parser)
+    options = parser.parse_args()
+    stem = stem_of(options, suffix)
+    return exit_code(options, lambda: save(draw(open_result(options.result), options), stem))

@@ -200,6 +200,15 @@ static double next_stop(const ric_trajectory *tr, double end) {
   return end;
 }
 
+/* Events of one time count once. */
+static void count_event_time(ric_trajectory *tr) {
+  if (tr->flow->time - tr->window_start > 1) {
+    tr->window_start = tr->flow->time;
+    tr->window_events = 0;
+  }
+  tr->window_events++;
+}
+
 /* One step of the flow, up to its first event. */
 static ric_status advance(ric_trajectory *tr, double end, ric_error *error) {
   ric_flow *f = tr->flow;
@@ -211,19 +220,12 @@ static ric_status advance(ric_trajectory *tr, double end, ric_error *error) {
   ric_flow_accept(f, x);
   show_grazes(tr, start, length);
   RIC_TRY(contacts_depart(tr, error));
-  if (meets)
+  if (meets) {
     RIC_TRY(contacts_meet(tr, error));
-  tr->window_events += meets; /* those of one time count once */
+    count_event_time(tr);
+  }
   show_coming(tr);
   return RIC_OK;
-}
-
-static bool too_many_events(ric_trajectory *tr) {
-  if (tr->flow->time - tr->window_start > 1) {
-    tr->window_start = tr->flow->time;
-    tr->window_events = 0;
-  }
-  return tr->window_events > tr->options.events_per_time;
 }
 
 static void conclude(ric_trajectory *tr, ric_run_outcome outcome, const char *reason) {
@@ -236,7 +238,7 @@ static bool is_over(ric_trajectory *tr, double end) {
   char reason[128];
   if (tr->ended)
     conclude(tr, RIC_RUN_ENDED, "the observer asked for the end");
-  else if (too_many_events(tr)) {
+  else if (tr->window_events > tr->options.events_per_time) {
     snprintf(reason, sizeof reason, "events at more than %g times between t = %g and %g", tr->options.events_per_time,
              tr->window_start, tr->flow->time);
     conclude(tr, RIC_RUN_EVENT_LIMIT, reason);

@@ -218,13 +218,21 @@ def study(particles=30, ends="periodic", gamma="0.1", at_start="[0]", orbit="", 
     return text + (f"sweep: {sweep}\n" if sweep else "")
 
 
+def trajectory(particles=1, floor="-1", model="", start="v: 2", duration=20, time="", sweep=None):
+    """Uncoupled particles of mass and stiffness 1, whose motions between impacts are sine waves."""
+    text = "kind: trajectory\n"
+    text += f"model: {{type: chain, particles: {particles}, gamma: 0, floor: {floor}{model and ', ' + model}}}\n"
+    text += f"start: {{{start}}}\ntime: {{duration: {duration}{time and ', ' + time}}}\n"
+    return text + (f"sweep: {sweep}\n" if sweep else "")
+
+
 def sweep(points, low=0.0, high=0.187, parameter="model.gamma"):
     return f"{{parameter: {parameter}, from: {low}, to: {high}, points: {points}}}"
 
 
 # --- checkpoints ---
 
-PART_HEADER, RECORD_HEADER = 112, 48  # bytes, as the program's checkpoint_files.h lays them out
+PART_HEADER, RECORD_HEADER = 144, 48  # bytes, as the program's checkpoint_files.h lays them out
 
 
 def records(folder):

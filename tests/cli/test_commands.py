@@ -175,7 +175,7 @@ def every_shipped_study_is_valid_and_runs(ricochet, folder):
     for path in sorted(ricochet.studies.glob("*.yaml")):
         tasks = int(program.only(ricochet("check", path, cwd=folder).expect(DONE).out, r"tasks +(\d+)"))
         result = ricochet.run(path, cwd=folder, ranks=2).expect(DONE)
-        assert result.out.startswith(f"{tasks} tasks: ") and result.err == "", result
+        assert result.out.startswith(f"{tasks} task{'s' if tasks > 1 else ''}: ") and result.err == "", result
         counts = [int(n) for n in program.re.findall(r"(\d+) [a-z_]+(?:,| ->)", result.out)]
         assert sum(counts) == tasks, result
     assert names(folder) == sorted(f"{path.stem}.h5" for path in ricochet.studies.glob("*.yaml"))

@@ -111,7 +111,7 @@ def wrong_types_are_refused(ricochet, folder):
             ("[15, 3]", "15", 12, "orbit.at_start = 15", "a list of integers"),
             ("states: true", "states: 1", 15, "orbit.states = 1", "true or false"),
             ("ends: periodic", "ends: ring", 6, "model.ends = ring", "periodic, fixed, free"),
-            ("kind: orbits", "kind: orbit", 1, "kind = orbit", "expected orbits"),
+            ("kind: orbits", "kind: orbit", 1, "kind = orbit", "expected one of orbits, trajectory"),
         ],
     )
 
@@ -263,15 +263,14 @@ def studies_over_8_MiB_are_refused(ricochet, folder):
 @test
 def what_later_versions_bring_is_refused_by_name(ricochet, folder):
     later = "not in this version"
-    kinds = ("branch", "trajectory", "grazing", "diagram", "atlas", "basin")
+    kinds = ("branch", "grazing", "diagram", "atlas", "basin")
     cases = [
         *(("kind: orbits", f"kind: {kind}", 1, f"kind = {kind}", later, "orbits") for kind in kinds),
         ("type: chain", "type: oscillator", 4, "model.type = oscillator", later, "chain"),
         ("method: impulse", "method: shooting", 14, "orbit.method = shooting", later, "impulse, dense"),
         ("method: impulse", "method: ritz", 14, "orbit.method = ritz", later, "impulse, dense"),
         ("states: true", "multipliers: true", 15, "orbit.multipliers = true", later, "false"),
-        ("states: true", "verify: true", 15, "orbit.verify = true", later, "false"),
-        ("sweep:", "time: {duration: 1}\nsweep:", 16, "'time'", later),
+        ("sweep:", "iterate: {keep: 1}\nsweep:", 16, "'iterate'", later),
         ("restitution: 1", "restitution: 0.8", 9, "model.restitution = 0.8", later),
     ]
     refuse_variations(ricochet, folder, cases)

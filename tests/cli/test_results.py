@@ -28,6 +28,11 @@ def shipped(ricochet):
     return [ricochet.shared / f"{path.stem}.h5" for path in paths]
 
 
+def group_of(file):
+    """The group of the study's kind."""
+    return "orbits" if "orbits" in file else "trajectory"
+
+
 def data_sets(file):
     found = []
     file.visititems(lambda name, thing: found.append(thing) if isinstance(thing, h5py.Dataset) else None)
@@ -42,7 +47,7 @@ def xarray_opens_every_group_with_no_option(ricochet, folder):
     for path in shipped(ricochet):
         with h5py.File(path) as file:
             groups = [name for name in file if isinstance(file[name], h5py.Group)]
-            assert {"orbits", "sweep", "run"} <= set(groups), groups
+            assert {group_of(file), "sweep", "run"} <= set(groups), groups
             for group in groups:
                 with xarray.open_dataset(path, engine="h5netcdf", group=group) as opened:
                     assert not [d for d in opened.sizes if "phantom" in d], (path, group, opened.sizes)
@@ -104,9 +109,10 @@ def enums_are_read_by_name(ricochet, folder):
 def reasons_are_texts_of_fixed_length_where_there_is_something_to_say(ricochet, folder):
     for path in shipped(ricochet):
         with h5py.File(path) as file:
-            assert file["orbits/reason"].dtype.kind == "S"
-            for outcome, reason in zip(words_of(file["orbits/outcome"]), file["orbits/reason"][()]):
-                assert (reason == b"") == (outcome == "admissible"), (path.name, outcome, reason)
+            group = file[group_of(file)]
+            assert group["reason"].dtype.kind == "S"
+            for outcome, reason in zip(words_of(group["outcome"]), group["reason"][()]):
+                assert (reason == b"") == (outcome in ("admissible", "completed")), (path.name, outcome, reason)
                 reason.decode("ascii")
 
 
@@ -185,6 +191,12 @@ def list_elements_and_logarithmic_ranges_are_swept(ricochet, folder):
 # --- CSV ---
 
 
+def per_task(file):
+    """The data sets with one value per task."""
+    sets = file[group_of(file)].items()
+    return {name: data for name, data in sets if data.ndim == 1 and data.dims[0][0].name == "/task"}
+
+
 def matches(text, value):
     if isinstance(value, (float, np.floating)):
         return float(text) == value or (np.isnan(value) and np.isnan(float(text)))
@@ -198,8 +210,8 @@ def csv_holds_exactly_the_values_of_the_file(ricochet, folder):
         rows = list(csv.DictReader(io.StringIO(out)))
         with h5py.File(path) as file:
             columns = {name: file["sweep"][name][()] for name in file["sweep"]}
-            columns.update({name: data[()] for name, data in file["orbits"].items() if data.ndim == 1})
-            columns["outcome"] = words_of(file["orbits/outcome"])
+            columns.update({name: data[()] for name, data in per_task(file).items()})
+            columns["outcome"] = words_of(file[group_of(file)]["outcome"])
         assert rows[0].keys() == columns.keys(), (path, rows[0].keys())
         for name, values in columns.items():
             assert len(values) == len(rows)

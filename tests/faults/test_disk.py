@@ -10,7 +10,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "cli"))
 import program
 from program import FILES, Skip, assert_same, names, ranks_of, records, run_attributes, study, sweep, tasks_in, test
-from program import wait_until, write
+from program import trajectory, wait_until, write
 
 # Files grow until a limit instead of a full disk. The shared memory of MPI would meet it first, and below some 5 MB the
 # files through which mpirun and its ranks find each other.
@@ -18,6 +18,9 @@ NO_SHARED_MEMORY = ("--mca", "btl", "tcp,self", "--mca", "osc", "^sm")
 SMALL, MIDDLE = 8 << 20, 20 << 20  # less than the checkpoint of a rank; more than that, less than the result
 WIDE = study(particles=400, at_start="[7]", sweep=sweep(4000))  # 6.7 kB a task: 27 MB in all
 SLOW = study(particles=100000, at_start="[7]", orbit="states: false", sweep=sweep(500))  # some 10 ms a task
+# Rows of 700 bytes with some 20 MB of impacts behind them.
+RAGGED = trajectory(10, start="v: [1.1, 1.2, 1.3, 1.4, 1.5, 1.6, 1.7, 1.8, 1.9, 2]", time="samples: 2",
+                    sweep="{parameter: time.duration, from: 100, to: 16000, points: 60, scale: log}")
 ANY_COMMAND = ("heap_checksums",)  # holds addresses, which move with the length of the command line
 
 
@@ -87,6 +90,22 @@ def the_old_result_outlives_a_forced_run_without_space(ricochet, folder):
         result.expect_refused(FILES, "whole.h5", "File too large")
         assert (folder / "whole.h5").read_bytes() == before
         assert names(folder) == ["s.yaml", "whole.h5", "whole.h5.ckpt"]
+
+
+@test
+def no_space_for_what_comes_on_top_of_the_rows(ricochet, folder):
+    """Impacts are of no known number before they are computed: the checkpoint, or the result, meets the limit."""
+    size = whole_size(ricochet, folder, RAGGED)
+    for limit, place in ((6 << 20, "s.h5.ckpt/part-"), (size - 1, "s.h5: ")):
+        result = ricochet.run(
+            "s.yaml", "--resume", cwd=folder, ranks=2, mpi=NO_SHARED_MEMORY, before=files_up_to(limit)
+        )
+        result.expect_refused(FILES, place, "cannot write", "File too large")
+        assert names(folder) == ["s.h5.ckpt", "s.yaml", "whole.h5"]
+    assert tasks_in(folder / "s.h5.ckpt") == 60
+    ricochet.run("s.yaml", "--resume", cwd=folder, ranks=3).expect_done()
+    assert run_attributes(folder / "s.h5")["tasks_computed"] == 0
+    assert_same(folder / "whole.h5", folder / "s.h5", ANY_COMMAND)
 
 
 # --- a small file system ---

@@ -12,8 +12,8 @@ import xarray
 
 VARY = {"/": {"file_time", "command"}}
 DIMENSIONS = {
-    "/": {"task": 20, "particle": 6, "impact": 0, "special_point": 50, "none": 0},
-    "orbits": {"task": 20, "particle": 6, "impact": 0},
+    "/": {"task": 20, "particle": 6, "impact": 0, "sample": 5, "special_point": 50, "none": 0},
+    "orbits": {"task": 20, "particle": 6, "impact": 0, "sample": 5},
     "special": {"special_point": 50},
     "nothing": {"none": 0},
     "sweep": {"task": 20},
@@ -76,6 +76,9 @@ def check_values(file):
     q = numpy.sin(numpy.arange(20.0)[:, None] + 0.001 * numpy.arange(6))
     q[3::7, 0], q[4::7, 0] = math.nan, -math.inf
     numpy.testing.assert_allclose(file["orbits/q"], q, rtol=1e-14)
+    path = numpy.sin(numpy.arange(20.0)[:, None] + 0.001 * numpy.arange(30)).reshape(20, 5, 6)
+    path[3::7, 0, 0], path[4::7, 0, 0] = math.nan, -math.inf
+    numpy.testing.assert_allclose(file["orbits/path"], path, rtol=1e-14)
     assert file["orbits/reason"][2].decode() == "café" and len(file["orbits/reason"][3]) == 32
     assert file["orbits/clearance_particle"][7] == 7 * 1000003 - 5
     assert file["orbits/impulse"].shape == (20, 0)
@@ -87,6 +90,7 @@ def check_xarray(path):
             assert dict(opened.sizes) == dimensions, (group, dict(opened.sizes))
             opened.load()
     with xarray.open_dataset(path, engine="h5netcdf", group="orbits") as orbits:
+        assert orbits.path.dims == ("task", "sample", "particle")
         assert orbits.q.dims == ("task", "particle") and orbits.energy.dims == ("task",)
         assert orbits.outcome.attrs["flag_meanings"].split()[1] == "inadmissible"
     with xarray.open_dataset(path, engine="h5netcdf", group="run") as run:

@@ -67,7 +67,7 @@ static void read_failure(synthetic *s) {
 }
 
 static void other_extent(synthetic *s) {
-  s->layouts[0].columns[5].extent -= 1;
+  s->layouts[0].columns[5].extents[0] -= 1;
   table_lay_out(&s->layouts[0]);
 }
 

@@ -10,29 +10,37 @@ static const char *const outcomes[] = {"admissible", "inadmissible", "grazing", 
 static const char *const kinds[] = {"resonance", "zero"};
 
 static column number(const char *name, const char *axis, size_t extent) {
-  return (column){name, COLUMN_F64, axis, extent, 0, NULL, 0, "length", "a made-up number", "synthetic.c", 0};
+  return (column){name, COLUMN_F64, {axis}, {extent}, 0, NULL, 0, "length", "a made-up number", "synthetic.c", 0};
+}
+
+static column block(const char *name, const char *axis, size_t extent, const char *other, size_t other_extent) {
+  column c = number(name, axis, extent);
+  c.axes[1] = other;
+  c.extents[1] = other_extent;
+  return c;
 }
 
 static column integer(const char *name) {
-  return (column){name, COLUMN_I64, NULL, 1, 0, NULL, 0, "1", "a made-up integer", "synthetic.c", 0};
+  return (column){name, COLUMN_I64, {NULL}, {0}, 0, NULL, 0, "1", "a made-up integer", "synthetic.c", 0};
 }
 
 static column word(const char *name, const char *const *names, size_t count) {
-  return (column){name, COLUMN_ENUM, NULL, 1, 0, names, count, "1", "a made-up verdict", "synthetic.c", 0};
+  return (column){name, COLUMN_ENUM, {NULL}, {0}, 0, names, count, "1", "a made-up verdict", "synthetic.c", 0};
 }
 
 static column text(const char *name, size_t bytes) {
-  return (column){name, COLUMN_TEXT, NULL, 1, bytes, NULL, 0, "", "a made-up remark", "synthetic.c", 0};
+  return (column){name, COLUMN_TEXT, {NULL}, {0}, bytes, NULL, 0, "", "a made-up remark", "synthetic.c", 0};
 }
 
 /* One value per value of the type's range that a reader could trip over: NaN, infinity, quotes, UTF-8, a full text. */
 static void fill_numbers(unsigned char *row, const column *c, uint64_t task) {
-  double *values = malloc((c->extent + 1) * sizeof *values);
-  for (size_t i = 0; values && i < c->extent; i++)
+  const size_t count = column_values(c);
+  double *values = malloc((count + 1) * sizeof *values);
+  for (size_t i = 0; values && i < count; i++)
     values[i] = sin((double)task + 0.001 * (double)i);
-  if (values && c->extent && task % 7 == 3)
+  if (values && count && task % 7 == 3)
     values[0] = -NAN;
-  if (values && c->extent && task % 7 == 4)
+  if (values && count && task % 7 == 4)
     values[0] = -INFINITY;
   if (values)
     row_put_numbers(row, c, values);
@@ -70,8 +78,9 @@ static void lay_out(synthetic *s, const synthetic_size *size) {
               .row_axis = "task",
               .columns = {word("outcome", outcomes, 4), text("reason", 32), number("energy", NULL, 1),
                           integer("clearance_particle"), number("q", "particle", size->particles),
-                          number("v", "particle", size->particles), number("impulse", "impact", size->impacts)},
-              .column_count = 7};
+                          number("v", "particle", size->particles), number("impulse", "impact", size->impacts),
+                          block("path", "sample", 5, "particle", size->particles)},
+              .column_count = 8};
   s->layouts[1] = (table){.group = "special",
                           .row_axis = "special_point",
                           .columns = {word("kind", kinds, 2), number("gamma", NULL, 1), text("remark", 32)},

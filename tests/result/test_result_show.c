@@ -63,8 +63,9 @@ static void show_lists_columns_and_counts_words(void **state) {
   message why;
   PRINTED(result_show(RESULT_FILE, &why), 0);
   assert_line("/orbits");
-  assert_line("  q                   float64  [task 20, particle 6]  length  a made-up number");
-  assert_line("  reason              text 32  [task 20]                      a made-up remark");
+  assert_line("  q                   float64  [task 20, particle 6]            length  a made-up number");
+  assert_line("  path                float64  [task 20, sample 5, particle 6]  length  a made-up number");
+  assert_line("  reason              text 32  [task 20]                                a made-up remark");
   assert_line("  outcome: admissible 10, inadmissible 10");
 }
 

@@ -203,13 +203,13 @@ static void tasks_outside_the_study_are_not_appended(void **state) {
   checkpoint *c = open_checkpoint(*state, &identity);
   const unsigned char rows[16] = {0};
   message why;
-  assert_int_equal(checkpoint_append(c, 0, 1, rows, &why), EXIT_FILES); /* not begun */
+  assert_int_equal(checkpoint_append(c, 0, 1, rows, NULL, &why), EXIT_FILES); /* not begun */
   assert_int_equal(checkpoint_begin(c, 0, &why), 0);
-  assert_int_equal(checkpoint_append(c, 99, 2, rows, &why), EXIT_FILES);
-  assert_int_equal(checkpoint_append(c, 100, 1, rows, &why), EXIT_FILES);
-  assert_int_equal(checkpoint_append(c, 0, 0, rows, &why), EXIT_FILES);
-  assert_int_equal(checkpoint_append(c, 1, UINT64_MAX, rows, &why), EXIT_FILES);
-  assert_int_equal(checkpoint_append(c, 98, 2, rows, &why), 0);
+  assert_int_equal(checkpoint_append(c, 99, 2, rows, NULL, &why), EXIT_FILES);
+  assert_int_equal(checkpoint_append(c, 100, 1, rows, NULL, &why), EXIT_FILES);
+  assert_int_equal(checkpoint_append(c, 0, 0, rows, NULL, &why), EXIT_FILES);
+  assert_int_equal(checkpoint_append(c, 1, UINT64_MAX, rows, NULL, &why), EXIT_FILES);
+  assert_int_equal(checkpoint_append(c, 98, 2, rows, NULL, &why), 0);
   checkpoint_close(&c);
 }
 

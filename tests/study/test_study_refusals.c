@@ -22,7 +22,8 @@ static void unknown_keys_name_the_nearest(void **state) {
 static void later_versions_are_refused_by_name(void **state) {
   (void)state;
   static const refusal cases[] = {
-      {"kind: orbits", "kind: branch", "s.yaml:1: ", "kind = branch is not in this version, expected orbits", NULL},
+      {"kind: orbits", "kind: branch",
+       "s.yaml:1: ", "kind = branch is not in this version, expected one of orbits, trajectory", NULL},
       {"type: chain", "type: oscillator",
        "s.yaml:4: ", "model.type = oscillator is not in this version, expected chain", NULL},
       {"type: chain", "mass: 3\n  type: duffing_chain",
@@ -33,9 +34,6 @@ static void later_versions_are_refused_by_name(void **state) {
        "s.yaml:14: ", "orbit.method = shooting is not in this version, expected one of impulse, dense", NULL},
       {"states: true", "multipliers: true",
        "s.yaml:15: ", "orbit.multipliers = true is not in this version, expected false", NULL},
-      {"states: true", "verify: true", "s.yaml:15: ", "orbit.verify = true is not in this version", NULL},
-      {"sweep:", "start: {q: [0]}\nsweep:", "s.yaml:17: ", "'start' is not in this version", NULL},
-      {"sweep:", "time: {duration: 1}\nsweep:", "s.yaml:17: ", "'time' is not in this version", NULL},
       {"sweep:", "iterate: {keep: 1}\nsweep:", "s.yaml:17: ", "'iterate' is not in this version", NULL},
       {"restitution: 1", "restitution: 0.8", "s.yaml:9: ",
        "model.restitution = 0.8 is not in this version: orbits of an undamped chain need restitution 1", NULL},
@@ -45,7 +43,7 @@ static void later_versions_are_refused_by_name(void **state) {
 
 static void flags_of_a_later_version_may_be_false(void **state) {
   (void)state;
-  study *s = parsed_variation("states: true", "multipliers: false\n  verify: false");
+  study *s = parsed_variation("states: true", "multipliers: false");
   study_destroy(&s);
   assert_null(s);
 }
@@ -89,7 +87,7 @@ static void wrong_words_flags_and_texts_are_refused(void **state) {
       {"ends: periodic", "ends: \"\"", "s.yaml:6: ", "model.ends = \"\" (a quoted string), expected one of", NULL},
       {"ends: periodic", "ends: [fixed]", "s.yaml:6: ", "model.ends = a list, expected one of", NULL},
       {"ends: periodic", "ends:", "s.yaml:6: ", "model.ends = null, expected one of", NULL},
-      {"kind: orbits", "kind: 3", "s.yaml:1: ", "kind = 3, expected orbits", NULL},
+      {"kind: orbits", "kind: 3", "s.yaml:1: ", "kind = 3, expected one of orbits, trajectory", NULL},
       {"states: true", "states: yes", "s.yaml:15: ", "orbit.states = yes, expected true or false", NULL},
       {"states: true", "states: on", "s.yaml:15: ", "orbit.states = on, expected true or false", NULL},
       {"states: true", "states: \"true\"", "s.yaml:15: ", "(a quoted string), expected true or false", NULL},
@@ -128,7 +126,7 @@ static void patterns_that_no_chain_has_are_refused(void **state) {
 static void missing_keys_are_named_with_what_they_allow(void **state) {
   (void)state;
   static const refusal cases[] = {
-      {"kind: orbits\n", "", "s.yaml: ", "missing key kind (orbits)", NULL},
+      {"kind: orbits\n", "", "s.yaml: ", "missing key kind (one of orbits, trajectory)", NULL},
       {"  type: chain\n", "", "s.yaml: ", "missing key model.type (chain)", NULL},
       {"  particles: 30\n", "", "s.yaml: ", "missing key model.particles (an integer from 1 to 1000000000)", NULL},
       {"  period: 1.5 pi\n", "", "s.yaml: ", "missing key orbit.period (a number > 0)", NULL},

@@ -76,17 +76,17 @@ static void assert_allowed(study_key key, const char *expected) {
 
 static void allowed_values_are_said_in_words(void **state) {
   (void)state;
-  assert_allowed(KEY_KIND, "orbits");
+  assert_allowed(KEY_KIND, "one of orbits, trajectory");
   assert_allowed(KEY_TITLE, "text");
   assert_allowed(KEY_MODEL_PARTICLES, "an integer from 1 to 1000000000");
   assert_allowed(KEY_MODEL_ENDS, "one of periodic, fixed, free");
   assert_allowed(KEY_MODEL_GAMMA, "a number >= 0");
   assert_allowed(KEY_MODEL_FLOOR, "a number or null, or a list of them");
-  assert_allowed(KEY_MODEL_RESTITUTION, "a number from 0 to 1");
+  assert_allowed(KEY_MODEL_RESTITUTION, "a number from 0 to 1, or a list of them");
   assert_allowed(KEY_ORBIT_PERIOD, "a number > 0");
   assert_allowed(KEY_ORBIT_AT_START, "a list of integers >= 0");
   assert_allowed(KEY_ORBIT_STATES, "true or false");
-  assert_allowed(KEY_ORBIT_VERIFY, "false");
+  assert_allowed(KEY_ORBIT_MULTIPLIERS, "false");
 }
 
 static void open_ranges_are_said_and_checked(void **state) {

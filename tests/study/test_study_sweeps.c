@@ -160,7 +160,7 @@ static void sweeps_over_what_is_no_number_are_refused(void **state) {
       {"{parameter: model.particles, values: [1]}", "s.yaml:4: ", "model.particles cannot be swept",
        "it changes the shape of the result"},
       {"{parameter: iterate.keep, values: [1]}", "s.yaml:4: ", "not in this version", "iterate"},
-      {"{parameter: 'start.q[0]', values: [1]}", "s.yaml:4: ", "not in this version", "start"},
+      {"{parameter: 'start.q', values: [1]}", "s.yaml:4: ", "start.q is a key of kind: trajectory", ""},
       {"{parameter: [a], values: [1]}", "s.yaml:4: ", "sweep.parameter = a list", "expected text"},
       {"[{parameter: model.gamma, values: [1]},\n {parameter: model.gamma, values: [2]}]",
        "s.yaml:5: ", "sweep[1].parameter = model.gamma is swept twice", ""},

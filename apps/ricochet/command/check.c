@@ -27,8 +27,9 @@ static void print_plan(const study *s, const kind_plan *plan) {
   }
   printf("  tasks   %llu\n", (unsigned long long)study_tasks(s));
   printf("  memory  %s per rank\n", machine_size(plan->memory, memory, sizeof memory));
-  printf("  result  %s (as much again for the checkpoint while it runs)\n",
-         machine_size((double)study_tasks(s) * (double)plan->rows.row_bytes, size, sizeof size));
+  printf("  result  %s%s (as much again for the checkpoint while it runs)\n",
+         machine_size((double)study_tasks(s) * (double)plan->rows.row_bytes, size, sizeof size),
+         plan->tail_count ? " plus events" : "");
 }
 
 static int check_study(const char *path, const char *const *sets, size_t set_count, message *why) {

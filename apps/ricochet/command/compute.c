@@ -5,6 +5,8 @@
 #include "../run/ranks.h"
 #include "../run/scheduler.h"
 
+enum { MOST_BYTES = 64 << 20 /* of rows, and of tails, that a rank holds, unless one task has more */ };
+
 /* One rank at work. */
 typedef struct rank {
   const kind_plan *plan;
@@ -12,7 +14,9 @@ typedef struct rank {
   worker *worker;
   checkpoint *checkpoint;
   scheduler *scheduler;
-  unsigned char *rows; /* [capacity] of the run of tasks at hand */
+  unsigned char *rows;            /* [capacity] of the run of tasks at hand */
+  uint64_t *counts;               /* [capacity][tails] */
+  records tails[KIND_MOST_TAILS]; /* of all its tasks */
   uint64_t capacity, done;
   progress *progress;
   double sync_interval, synced;
@@ -31,26 +35,68 @@ static int grow(rank *r, uint64_t tasks, message *why) {
   if (tasks <= r->capacity)
     return 0;
   unsigned char *more = realloc(r->rows, tasks * r->plan->rows.row_bytes);
-  if (!more)
+  if (more)
+    r->rows = more;
+  uint64_t *counts = realloc(r->counts, (tasks * r->plan->tail_count + 1) * sizeof *counts);
+  if (counts)
+    r->counts = counts;
+  if (!more || !counts)
     return refuse(why, EXIT_RUN, "no memory for a chunk of %llu tasks", (unsigned long long)tasks);
-  r->rows = more;
   r->capacity = tasks;
   return 0;
 }
 
-/* Consecutive tasks, appended as one record; fewer when the run is stopped in between. */
+/* Evaluates a task as the `at`-th of the run at hand. @returns 0, or -1 when it was stopped */
+static int evaluate_task(rank *r, uint64_t task, uint64_t at) {
+  uint64_t before[KIND_MOST_TAILS], *counts = r->counts + at * r->plan->tail_count;
+  for (size_t k = 0; k < r->plan->tail_count; k++)
+    before[k] = r->tails[k].count;
+  int stopped =
+      poll_all(r) || r->kind->evaluate(r->worker, r->plan, task, r->rows + at * r->plan->rows.row_bytes, r->tails) != 0;
+  for (size_t k = 0; k < r->plan->tail_count; k++) {
+    if (stopped)
+      records_cut(&r->tails[k], before[k]);
+    counts[k] = r->tails[k].count - before[k];
+  }
+  return stopped ? -1 : 0;
+}
+
+static double tail_bytes(const rank *r) {
+  double bytes = 0;
+  for (size_t k = 0; k < r->plan->tail_count; k++)
+    bytes += (double)r->tails[k].count * (double)r->tails[k].record_bytes;
+  return bytes;
+}
+
+static int append(rank *r, uint64_t first, uint64_t count, message *why) {
+  checkpoint_tails tails = {.counts = r->counts};
+  for (size_t k = 0; k < r->plan->tail_count; k++)
+    tails.entries[k] = r->tails[k].bytes;
+  int code = checkpoint_append(r->checkpoint, first, count, r->rows, r->plan->tail_count ? &tails : NULL, why);
+  for (size_t k = 0; k < r->plan->tail_count; k++)
+    records_cut(&r->tails[k], 0);
+  return code;
+}
+
+/* Consecutive tasks, appended as one record; as several when their tails are large, and fewer when the run is stopped
+ * in between. */
 static int evaluate_run(rank *r, uint64_t first, uint64_t count, int *stopped, message *why) {
   int code = grow(r, count, why);
   uint64_t finished = 0;
-  while (!code && finished < count && !*stopped) {
-    unsigned char *row = r->rows + finished * r->plan->rows.row_bytes;
-    if (poll_all(r) || r->kind->evaluate(r->worker, &r->plan->rows, first + finished, row) != 0)
+  for (uint64_t i = 0; !code && !*stopped && i < count; i++) {
+    if (evaluate_task(r, first + finished, finished) != 0)
       *stopped = 1;
     else
       finished++;
+    if (finished == 0 || tail_bytes(r) < MOST_BYTES)
+      continue;
+    code = append(r, first, finished, why);
+    r->done += finished;
+    first += finished;
+    finished = 0;
   }
   if (!code && finished > 0)
-    code = checkpoint_append(r->checkpoint, first, finished, r->rows, why);
+    code = append(r, first, finished, why);
   r->done += finished;
   return code;
 }
@@ -71,9 +117,9 @@ static int evaluate_chunk(rank *r, uint64_t first, uint64_t count, int *stopped,
   return checkpoint_sync(r->checkpoint, why);
 }
 
-/* Largest chunk whose rows stay below 64 MB. */
+/* Largest chunk whose rows stay below the limit. */
 static uint64_t largest_chunk(const kind_plan *plan) {
-  uint64_t most = (64u << 20) / plan->rows.row_bytes;
+  uint64_t most = MOST_BYTES / plan->rows.row_bytes;
   return most > 0 ? most : 1;
 }
 
@@ -114,6 +160,8 @@ int compute(const study *s, const kind *k, const kind_plan *plan, checkpoint *c,
   progress p;
   rank r = {.plan = plan, .kind = k, .checkpoint = c, .progress = &p, .sync_interval = o->checkpoint_seconds};
   *result = (compute_result){.stopped = STOP_NONE};
+  for (size_t i = 0; i < plan->tail_count; i++)
+    r.tails[i].record_bytes = plan->tails[i].records.row_bytes;
   progress_begin(&p, ranks_rank() == 0 ? o->progress : PROGRESS_NEVER, study_tasks(s), checkpoint_done(c));
   int code = start(&r, s, why);
   if (!code) {
@@ -134,5 +182,8 @@ int compute(const study *s, const kind *k, const kind_plan *plan, checkpoint *c,
   scheduler_destroy(&r.scheduler);
   k->close(&r.worker);
   free(r.rows);
+  free(r.counts);
+  for (size_t i = 0; i < KIND_MOST_TAILS; i++)
+    records_clear(&r.tails[i]);
   return code;
 }

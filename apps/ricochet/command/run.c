@@ -38,6 +38,7 @@ typedef struct run {
   checkpoint *checkpoint;
   compute_result computed;
   extra_rows extra;
+  table offsets; /* of the tails; no columns without any */
   char *command;
   double began;
   uint64_t resumed;
@@ -87,6 +88,8 @@ static int look_before_computing(run *r, message *why) {
 static int open_checkpoint(run *r, message *why) {
   checkpoint_identity identity = {
       .digest = study_digest(r->study), .tasks = study_tasks(r->study), .row_bytes = r->plan.rows.row_bytes};
+  for (size_t k = 0; k < r->plan.tail_count; k++)
+    identity.entry_bytes[k] = r->plan.tails[k].records.row_bytes;
   snprintf(identity.version, sizeof identity.version, "%s %s", build_version(), build_git_sha());
   int code = ranks_agree(checkpoint_open(r->output.folder, &identity, &r->checkpoint, why), why);
   if (code)
@@ -108,6 +111,41 @@ static int read_rows(void *user, uint64_t first, uint64_t count, unsigned char *
   return code;
 }
 
+/* A tail of the tasks as the writer asks for it. */
+typedef struct tail_source {
+  run *run;
+  size_t tail;
+} tail_source;
+
+static int read_tail(void *user, uint64_t first, uint64_t count, unsigned char *rows, message *why) {
+  const tail_source *from = user;
+  stop_leave_by_signal();
+  return checkpoint_read_entries(from->run->checkpoint, from->tail, first, count, rows, why);
+}
+
+/* Rows of one integer per tail. */
+static int read_offsets(void *user, uint64_t first, uint64_t count, unsigned char *rows, message *why) {
+  run *r = user;
+  const size_t tails = r->plan.tail_count;
+  uint64_t *offsets = (uint64_t *)(void *)rows;
+  int code = 0;
+  for (size_t k = 0; !code && k < tails; k++)
+    code = checkpoint_read_offsets(r->checkpoint, k, first, count, offsets + k, tails, why);
+  return code;
+}
+
+static void lay_out_offsets(run *r) {
+  table *t = &r->offsets;
+  *t = (table){.group = r->plan.rows.group, .row_axis = "task_edge"};
+  for (size_t k = 0; k < r->plan.tail_count; k++)
+    t->columns[t->column_count++] = (column){.name = r->plan.tails[k].offset,
+                                             .type = COLUMN_I64,
+                                             .units = "1",
+                                             .long_name = r->plan.tails[k].meaning,
+                                             .source = "counts of all tasks before"};
+  table_lay_out(t);
+}
+
 static int read_extra(void *user, uint64_t first, uint64_t count, unsigned char *rows, message *why) {
   const extra_rows *extra = user;
   (void)why;
@@ -118,6 +156,28 @@ static int read_extra(void *user, uint64_t first, uint64_t count, unsigned char 
 static int still_ours(void *user, message *why) {
   const run *r = user;
   return lock_check(r->output.lock, why);
+}
+
+/* @param tails  [KIND_MOST_TAILS] that the tables refer to. @returns number of tables */
+static size_t list_tables(run *r, result_table *tables, tail_source *tails) {
+  const uint64_t tasks = study_tasks(r->study);
+  size_t count = 0;
+  tables[count++] = (result_table){.layout = &r->plan.rows, .rows = tasks, .read = read_rows, .user = r};
+  if (r->plan.tail_count > 0) {
+    lay_out_offsets(r);
+    tables[count++] = (result_table){.layout = &r->offsets, .rows = tasks + 1, .read = read_offsets, .user = r};
+  }
+  for (size_t k = 0; k < r->plan.tail_count; k++) {
+    tails[k] = (tail_source){.run = r, .tail = k};
+    tables[count++] = (result_table){.layout = &r->plan.tails[k].records,
+                                     .rows = checkpoint_entries(r->checkpoint, k),
+                                     .read = read_tail,
+                                     .user = &tails[k]};
+  }
+  if (r->extra.layout.column_count > 0)
+    tables[count++] =
+        (result_table){.layout = &r->extra.layout, .rows = r->extra.count, .read = read_extra, .user = &r->extra};
+  return count;
 }
 
 static int write_result(run *r, message *why) {
@@ -132,9 +192,9 @@ static int write_result(run *r, message *why) {
                           .ranks = ranks_count(),
                           .tasks_computed = r->computed.computed,
                           .tasks_resumed = r->resumed};
-  result_table tables[] = {{.layout = &r->plan.rows, .rows = study_tasks(r->study), .read = read_rows, .user = r},
-                           {.layout = &r->extra.layout, .rows = r->extra.count, .read = read_extra, .user = &r->extra}};
-  size_t count = r->extra.layout.column_count > 0 ? 2 : 1;
+  result_table tables[3 + KIND_MOST_TAILS];
+  tail_source tails[KIND_MOST_TAILS];
+  size_t count = list_tables(r, tables, tails);
   return result_write(r->output.path, &header, tables, count, still_ours, r, why);
 }
 
@@ -142,6 +202,22 @@ static int poll_stop(void *user) {
   (void)user;
   stop_leave_by_signal();
   return stop_asked() != STOP_NONE;
+}
+
+/* Every rank has counted for itself: the file is laid out by what rank 0 found. */
+static int agree_on_entries(run *r, message *why) {
+  uint64_t first[KIND_MOST_TAILS] = {0};
+  int code = 0;
+  for (size_t k = 0; k < r->plan.tail_count; k++)
+    first[k] = checkpoint_entries(r->checkpoint, k);
+  ranks_share(first, sizeof first);
+  for (size_t k = 0; !code && k < r->plan.tail_count; k++)
+    if (first[k] != checkpoint_entries(r->checkpoint, k))
+      code = refuse(why, EXIT_FILES,
+                    "%s: rank %d finds %llu records of %s, rank 0 %llu: is the folder shared by all nodes?",
+                    r->output.folder, ranks_rank(), (unsigned long long)checkpoint_entries(r->checkpoint, k),
+                    r->plan.tails[k].records.row_axis, (unsigned long long)first[k]);
+  return ranks_agree(code, why);
 }
 
 /* Everything after the tasks: their rows into the result. */
@@ -156,7 +232,11 @@ static int assemble(run *r, message *why) {
                   reasons[r->computed.stopped], (unsigned long long)checkpoint_done(r->checkpoint),
                   (unsigned long long)study_tasks(r->study));
   }
-  code = ranks_agree(r->kind->extra(r->study, (ric_poll){.call = poll_stop}, &r->extra, why), why);
+  code = ranks_agree(checkpoint_count_entries(r->checkpoint, why), why);
+  if (!code)
+    code = agree_on_entries(r, why);
+  if (!code)
+    code = ranks_agree(r->kind->extra(r->study, (ric_poll){.call = poll_stop}, &r->extra, why), why);
   if (!code)
     code = write_result(r, why);
   ranks_sum(r->outcomes, 64);

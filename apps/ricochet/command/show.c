@@ -6,14 +6,16 @@
 #include "../result/result.h"
 #include "command.h"
 
-static const char help[] = "usage: ricochet show FILE.h5 [--csv[=GROUP]] [--verify]\n"
-                           "\n"
-                           "Prints what is in a result: parameters, columns, outcomes, special points.\n"
-                           "\n"
-                           "  --csv[=GROUP]  the columns of a group (default: the first with a row per task) as CSV\n"
-                           "  --verify       reads everything through its checksums and says whether it is sound\n"
-                           "\n"
-                           "Exit codes: 0 done, 2 bad usage, 3 cannot read, damaged or not a result.\n";
+static const char help[] =
+    "usage: ricochet show FILE.h5 [--csv[=GROUP[/AXIS]]] [--verify]\n"
+    "\n"
+    "Prints what is in a result: parameters, columns, outcomes, special points.\n"
+    "\n"
+    "  --csv[=GROUP]       the columns of a group (default: the first with a row per task) as CSV\n"
+    "  --csv=GROUP/AXIS    those along another axis, for example trajectory/impact_row\n"
+    "  --verify            reads everything through its checksums, says whether it is sound\n"
+    "\n"
+    "Exit codes: 0 done, 2 bad usage, 3 cannot read, damaged or not a result.\n";
 
 typedef enum what { SHOW_CONTENTS, SHOW_CSV, SHOW_VERIFY, SHOW_HELP } what;
 

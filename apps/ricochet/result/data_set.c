@@ -85,9 +85,9 @@ int data_set_create_scale(const place *at, hid_t file, const plan_scale *scale) 
   int code = 0;
   hid_t space = H5I_INVALID_HID, list = H5I_INVALID_HID, set = H5I_INVALID_HID;
   const table row = {.row_bytes = sizeof(int64_t)};
-  const column number = {.type = COLUMN_I64, .extent = 1};
+  const column number = {.type = COLUMN_I64};
   char long_name[128];
-  uint64_t chunk[2];
+  uint64_t chunk[PLAN_MOST_AXES];
   plan_chunk(&row, &number, scale->extent, chunk);
   HDF5_TRY(at, space = H5Screate_simple(1, &(hsize_t){scale->extent}, NULL), "create /%s", scale->name);
   HDF5_TRY(at, list = data_set_properties(1, &(hsize_t){chunk[0]}), "create /%s", scale->name);
@@ -134,27 +134,48 @@ static int put_flag_meanings(const place *at, hid_t set, const column *c) {
 
 static int describe_column(const place *at, hid_t file, hid_t set, const table *t, const column *c) {
   char axes[256];
-  snprintf(axes, sizeof axes, "%s%s%s", t->row_axis, c->axis ? " " : "", c->axis ? c->axis : "");
+  snprintf(axes, sizeof axes, "%s", t->row_axis);
+  for (int i = 0; i < column_axes(c); i++)
+    snprintf(axes + strlen(axes), sizeof axes - strlen(axes), " %s", c->axes[i]);
   int code = put_description(at, set, c->units, c->long_name, c->source, axes);
   if (!code && c->type == COLUMN_ENUM)
     code = put_flag_meanings(at, set, c);
   if (!code)
     code = attach_scale(at, file, set, t->row_axis, 0);
-  if (!code && c->axis)
-    code = attach_scale(at, file, set, c->axis, 1);
+  for (int i = 0; !code && i < column_axes(c); i++)
+    code = attach_scale(at, file, set, c->axes[i], 1 + (unsigned)i);
   return code;
 }
 
+/* HDF5's type of sizes is as wide as uint64_t, but not it. */
+static void to_sizes(const uint64_t *values, hsize_t *sizes) {
+  for (int i = 0; i < PLAN_MOST_AXES; i++)
+    sizes[i] = values[i];
+}
+
+int data_set_shape(const column *c, uint64_t rows, hsize_t shape[PLAN_MOST_AXES]) {
+  uint64_t extents[PLAN_MOST_AXES] = {0};
+  const int rank = plan_shape(c, rows, extents);
+  to_sizes(extents, shape);
+  return rank;
+}
+
+static void chunk_of(const result_table *t, const column *c, hsize_t *chunk) {
+  uint64_t extents[PLAN_MOST_AXES] = {0};
+  plan_chunk(t->layout, c, t->rows, extents);
+  to_sizes(extents, chunk);
+}
+
 int data_set_create(const place *at, hid_t file, hid_t group, const result_table *t, const column *c) {
-  int code = 0, rank = c->axis ? 2 : 1;
+  int code = 0;
   hid_t space = H5I_INVALID_HID, type = H5I_INVALID_HID, list = H5I_INVALID_HID, set = H5I_INVALID_HID;
   const char *in = t->layout->group;
-  const hsize_t shape[2] = {t->rows, c->extent};
-  uint64_t chunk[2];
-  plan_chunk(t->layout, c, t->rows, chunk);
+  hsize_t shape[PLAN_MOST_AXES], chunk[PLAN_MOST_AXES];
+  const int rank = data_set_shape(c, t->rows, shape);
+  chunk_of(t, c, chunk);
   HDF5_TRY(at, space = H5Screate_simple(rank, shape, NULL), "create /%s/%s", in, c->name);
   HDF5_TRY(at, type = data_set_type(c), "create /%s/%s", in, c->name);
-  HDF5_TRY(at, list = data_set_properties(rank, (const hsize_t[2]){chunk[0], chunk[1]}), "create /%s/%s", in, c->name);
+  HDF5_TRY(at, list = data_set_properties(rank, chunk), "create /%s/%s", in, c->name);
   HDF5_TRY(at, set = H5Dcreate2(group, c->name, type, space, H5P_DEFAULT, list, H5P_DEFAULT), "create /%s/%s", in,
            c->name);
   code = describe_column(at, file, set, t->layout, c);

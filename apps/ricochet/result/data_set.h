@@ -8,6 +8,9 @@
 /** Type of a column's values, the same in memory and in the file; the caller closes it. Negative on failure. */
 hid_t data_set_type(const column *c);
 
+/** Number of axes of a column's data set, and its shape. */
+int data_set_shape(const column *c, uint64_t rows, hsize_t shape[PLAN_MOST_AXES]);
+
 /** Creates the axis `/name` with its values. */
 int data_set_create_scale(const place *at, hid_t file, const plan_scale *scale);
 

@@ -24,7 +24,6 @@ static void lay_out_sweep(plan *p) {
     p->sweep.columns[p->sweep.column_count++] = (column){
         .name = sweep->name,
         .type = COLUMN_F64,
-        .extent = 1,
         .units = entry->units ? entry->units : "1", /* dimensionless */
         .long_name = entry->doc,
         .source = "swept parameter of the study",
@@ -55,8 +54,8 @@ static int add_scales_of(plan *p, const result_table *t, message *why) {
   int code = add_scale(p, t->layout->row_axis, t->rows, why);
   for (size_t k = 0; !code && k < t->layout->column_count; k++) {
     const column *c = &t->layout->columns[k];
-    if (c->axis)
-      code = add_scale(p, c->axis, c->extent, why);
+    for (int i = 0; !code && i < column_axes(c); i++)
+      code = add_scale(p, c->axes[i], c->extents[i], why);
   }
   return code;
 }
@@ -80,7 +79,7 @@ int plan_init(plan *p, const char *path, const result_header *header, const resu
   *p = (plan){.header = header};
   p->partial = malloc(strlen(path) + sizeof ".tmp");
   p->tables = calloc(table_count + 1, sizeof *p->tables);
-  p->scales = calloc(1 + (table_count + 1) * (1 + TABLE_MAX_COLUMNS), sizeof *p->scales);
+  p->scales = calloc(1 + (table_count + 1) * (1 + COLUMN_MOST_AXES * TABLE_MAX_COLUMNS), sizeof *p->scales);
   if (!p->partial || !p->tables || !p->scales)
     return refuse(why, EXIT_RUN, "%s: out of memory", path);
   strcpy(p->partial, path);
@@ -116,11 +115,22 @@ uint64_t plan_block_rows(const table *t) {
   return fit ? power_of_two(fit) : 1;
 }
 
-void plan_chunk(const table *t, const column *c, uint64_t rows, uint64_t chunk[2]) {
+int plan_shape(const column *c, uint64_t rows, uint64_t shape[PLAN_MOST_AXES]) {
+  const int further = column_axes(c);
+  shape[0] = rows;
+  for (int i = 0; i < further; i++)
+    shape[1 + i] = c->extents[i];
+  return 1 + further;
+}
+
+void plan_chunk(const table *t, const column *c, uint64_t rows, uint64_t chunk[PLAN_MOST_AXES]) {
   uint64_t fit = PLAN_CHUNK_BYTES / column_value_bytes(c);
-  uint64_t values = c->extent < fit ? c->extent : fit;
-  chunk[1] = values ? values : 1;
-  uint64_t height = power_of_two(fit / chunk[1]);
+  for (int i = column_axes(c) - 1; i >= 0; i--) { /* the last axis first: its values lie side by side */
+    uint64_t values = c->extents[i] < fit ? c->extents[i] : fit;
+    chunk[1 + i] = values ? values : 1;
+    fit /= chunk[1 + i];
+  }
+  uint64_t height = power_of_two(fit ? fit : 1);
   uint64_t block = plan_block_rows(t);
   if (height > block)
     height = block;
@@ -131,10 +141,14 @@ void plan_chunk(const table *t, const column *c, uint64_t rows, uint64_t chunk[2
 
 /* Indices: at most 24 bytes for a chunk, a few hundred for a data set (format of HDF5 1.10, "fixed array"). */
 static uint64_t column_bytes_at_most(const table *t, const column *c, uint64_t rows) {
-  uint64_t chunk[2];
+  uint64_t chunk[PLAN_MOST_AXES], shape[PLAN_MOST_AXES], chunks = 1, bytes = column_value_bytes(c);
+  const int axes = plan_shape(c, rows, shape);
   plan_chunk(t, c, rows, chunk);
-  uint64_t chunks = ((rows + chunk[0] - 1) / chunk[0]) * ((c->extent + chunk[1] - 1) / chunk[1]);
-  return 1024 + chunks * (chunk[0] * chunk[1] * column_value_bytes(c) + 4 + 24);
+  for (int i = 0; i < axes; i++) {
+    chunks *= (shape[i] + chunk[i] - 1) / chunk[i];
+    bytes *= chunk[i];
+  }
+  return 1024 + chunks * (bytes + 4 + 24);
 }
 
 uint64_t plan_bytes(const plan *p) {

@@ -10,7 +10,8 @@
 
 enum {
   PLAN_CHUNK_BYTES = 1 << 20, /* at most so much in a chunk: it fits HDF5's chunk cache of 1 MiB */
-  PLAN_BLOCK_BYTES = 4 << 20  /* rows that a rank reads and writes at a time; one row may be longer */
+  PLAN_BLOCK_BYTES = 4 << 20, /* rows that a rank reads and writes at a time; one row may be longer */
+  PLAN_MOST_AXES = 1 + COLUMN_MOST_AXES
 };
 
 /** An axis: the data set `/name` with the values 0 .. extent - 1. */
@@ -43,8 +44,11 @@ uint64_t plan_bytes(const plan *p);
 /** Rows of a block: a power of two, as many as PLAN_BLOCK_BYTES hold but at least one. */
 uint64_t plan_block_rows(const table *t);
 
-/** Chunk of a column [rows][values], both at least 1. Its rows divide those of a block (or hold all rows), so that no
- *  two ranks ever touch the same chunk. */
-void plan_chunk(const table *t, const column *c, uint64_t rows, uint64_t chunk[2]);
+/** Number of axes of a column's data set, and its shape [axes]. */
+int plan_shape(const column *c, uint64_t rows, uint64_t shape[PLAN_MOST_AXES]);
+
+/** Chunk of a column's data set, along each of its axes at least 1. Its rows divide those of a block (or hold all
+ *  rows), so that no two ranks ever touch the same chunk. */
+void plan_chunk(const table *t, const column *c, uint64_t rows, uint64_t chunk[PLAN_MOST_AXES]);
 
 #endif

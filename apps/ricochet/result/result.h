@@ -81,8 +81,8 @@ int result_show(const char *path, message *why);
 
 /** Prints a group as CSV (RFC 4180, numbers to 17 digits, enums by name, a row of names first): the swept parameters
  * and every column with one value per task. A group without a row per task comes with the rows of its first axis, and
- *  without the swept parameters.
- *  @param group  NULL for the first with a row per task
+ *  without the swept parameters; those of a ragged table (impact_row) begin with the task that they belong to.
+ *  @param group  NULL for the first with a row per task; "GROUP/AXIS" for the columns along another axis
  *  @returns also EXIT_USAGE when there is no such group, or nothing in it to print */
 int result_show_csv(const char *path, const char *group, message *why);
 

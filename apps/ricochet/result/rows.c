@@ -13,14 +13,10 @@ typedef struct table_writer {
   const result_table *from;
   uint64_t block;        /* rows */
   unsigned char *rows;   /* [block][row_bytes] */
-  unsigned char *values; /* [block][extent] of one column */
+  unsigned char *values; /* [block][values] of one column */
   hid_t transfer;
   hid_t sets[TABLE_MAX_COLUMNS], types[TABLE_MAX_COLUMNS];
 } table_writer;
-
-static size_t column_bytes(const column *c) {
-  return c->extent * column_value_bytes(c);
-}
 
 static int allocate_block(table_writer *t) {
   const table *layout = t->from->layout;
@@ -73,13 +69,15 @@ static int write_column(const table_writer *t, size_t k, uint64_t first, uint64_
   int code = 0;
   const column *c = &t->from->layout->columns[k];
   const char *group = t->from->layout->group;
-  const hsize_t start[2] = {first, 0}, size[2] = {count, c->extent};
+  const hsize_t start[PLAN_MOST_AXES] = {first};
+  hsize_t size[PLAN_MOST_AXES];
+  const int rank = data_set_shape(c, count, size);
   hid_t in_file = H5I_INVALID_HID, in_memory = H5I_INVALID_HID;
   unpack(t, c, count);
   HDF5_TRY(t->at, in_file = H5Dget_space(t->sets[k]), "write /%s/%s", group, c->name);
   HDF5_TRY(t->at, H5Sselect_hyperslab(in_file, H5S_SELECT_SET, start, NULL, size, NULL), "write /%s/%s", group,
            c->name);
-  HDF5_TRY(t->at, in_memory = H5Screate_simple(c->axis ? 2 : 1, size, NULL), "write /%s/%s", group, c->name);
+  HDF5_TRY(t->at, in_memory = H5Screate_simple(rank, size, NULL), "write /%s/%s", group, c->name);
   HDF5_TRY(t->at, H5Dwrite(t->sets[k], t->types[k], in_memory, in_file, t->transfer, t->values), "write /%s/%s", group,
            c->name);
 out:
@@ -92,7 +90,7 @@ static int write_block(const table_writer *t, uint64_t first) {
   uint64_t count = from->rows - first < t->block ? from->rows - first : t->block;
   int code = from->read(from->user, first, count, t->rows, t->at->why);
   for (size_t k = 0; !code && k < from->layout->column_count; k++)
-    if (from->layout->columns[k].extent > 0)
+    if (column_values(&from->layout->columns[k]) > 0)
       code = write_column(t, k, first, count);
   return code;
 }

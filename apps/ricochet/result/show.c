@@ -270,8 +270,8 @@ static int show_group(const place *at, hid_t file, const char *name) {
       code = show_counts(at, &g.sets[k]);
   for (size_t k = 0; !code && k < g.count; k++) {
     reader_row_axis(&g.sets[k], axis);
-    if (strcmp(axis, "task") == 0 || strcmp(axis, shown) == 0)
-      continue; /* columns of a table follow one another */
+    if (strcmp(axis, "task") == 0 || strcmp(axis, "task_edge") == 0 || strcmp(axis, shown) == 0)
+      continue; /* columns of a table follow one another; offsets say nothing to people */
     code = show_rows(at, &g, axis);
     strcpy(shown, axis);
   }

@@ -57,7 +57,7 @@ static int touch(const place *at, hid_t file, const table *t, const column *c) {
   int code = 0;
   hid_t set = H5I_INVALID_HID, in_file = H5I_INVALID_HID, in_memory = H5I_INVALID_HID, type = H5I_INVALID_HID;
   char name[512];
-  const hsize_t first[2] = {0, 0}, one[2] = {1, 1};
+  const hsize_t first[PLAN_MOST_AXES] = {0}, one[PLAN_MOST_AXES] = {1, 1, 1};
   unsigned char *zero = calloc(1, column_value_bytes(c));
   if (!zero)
     return refuse(at->why, EXIT_RUN, "%s: out of memory", at->path);
@@ -80,7 +80,7 @@ out:
 static int touch_table(const place *at, hid_t file, const result_table *t) {
   int code = 0;
   for (size_t k = 0; !code && k < t->layout->column_count; k++)
-    if (t->rows > 0 && t->layout->columns[k].extent > 0)
+    if (t->rows > 0 && column_values(&t->layout->columns[k]) > 0)
       code = touch(at, file, t->layout, &t->layout->columns[k]);
   return code;
 }

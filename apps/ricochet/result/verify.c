@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "attribute.h"
+#include "data_set.h"
 #include "heap.h"
 #include "objects.h"
 #include "reader.h"
@@ -183,7 +184,9 @@ static int check_expected(const verifier *v, const plan *expected) {
     const result_table *t = &expected->tables[i];
     for (size_t k = 0; !code && k < t->layout->column_count; k++) {
       const column *c = &t->layout->columns[k];
-      code = check_shape(v, t->layout->group, c->name, c->axis ? 2 : 1, (const hsize_t[2]){t->rows, c->extent});
+      hsize_t shape[PLAN_MOST_AXES];
+      const int rank = data_set_shape(c, t->rows, shape);
+      code = check_shape(v, t->layout->group, c->name, rank, shape);
     }
   }
   return code;

@@ -51,7 +51,11 @@ bool part_name_parse(const char *name, unsigned *generation, unsigned *rank) {
 }
 
 static int set_identity(checkpoint *c, const char *folder, const checkpoint_identity *identity, message *why) {
-  if (!(identity->row_bytes >= 1) || identity->tasks > UINT64_MAX / identity->row_bytes)
+  uint64_t smallest = identity->row_bytes; /* bytes of a task without entries */
+  while (c->tails < CHECKPOINT_MOST_TAILS && identity->entry_bytes[c->tails] > 0)
+    c->tails++;
+  smallest += c->tails * sizeof(uint64_t);
+  if (!(identity->row_bytes >= 1) || identity->tasks > (UINT64_MAX - sizeof(uint64_t)) / smallest)
     return refuse(why, EXIT_RUN, "%s: %llu tasks with rows of %llu bytes have no checkpoint", folder,
                   (unsigned long long)identity->tasks, (unsigned long long)identity->row_bytes);
   const int length = snprintf(c->folder, sizeof c->folder, "%s", folder);
@@ -60,6 +64,8 @@ static int set_identity(checkpoint *c, const char *folder, const checkpoint_iden
   c->identity.digest = identity->digest;
   c->identity.tasks = identity->tasks;
   c->identity.row_bytes = identity->row_bytes;
+  for (size_t i = 0; i < c->tails; i++)
+    c->identity.entry_bytes[i] = identity->entry_bytes[i];
   /* What stands behind the end of the caller's string must not count as a difference. */
   snprintf(c->identity.version, sizeof c->identity.version, "%.63s", identity->version);
   return 0;
@@ -96,6 +102,8 @@ void checkpoint_close(checkpoint **c) {
   if ((*c)->read_fd >= 0)
     close((*c)->read_fd);
   index_clear(&(*c)->index);
+  free((*c)->before);
+  free((*c)->counts);
   free((*c)->parts);
   free((*c)->buffer);
   free(*c);
@@ -173,20 +181,51 @@ int checkpoint_begin(checkpoint *c, int rank, message *why) {
   return code;
 }
 
-int checkpoint_append(checkpoint *c, uint64_t first, uint64_t count, const void *rows, message *why) {
+uint64_t counts_bytes(const checkpoint *c, uint64_t count) {
+  return c->tails ? (count * c->tails + 1) * sizeof(uint64_t) : 0;
+}
+
+static struct iovec piece_of(const void *bytes, uint64_t size) {
+  return (struct iovec){.iov_base = (void *)(uintptr_t)(bytes ? bytes : ""), .iov_len = size};
+}
+
+/* The counts with their digest, and the entries. @returns number of pieces */
+static int tail_pieces(const checkpoint *c, uint64_t count, const checkpoint_tails *tails, uint64_t *digest,
+                       struct iovec *before, struct iovec *behind) {
+  if (!c->tails)
+    return 0;
+  uint64_t totals[CHECKPOINT_MOST_TAILS] = {0};
+  for (uint64_t i = 0; i < count * c->tails; i++)
+    totals[i % c->tails] += tails->counts[i];
+  *digest = digest_bytes(0, tails->counts, count * c->tails * sizeof(uint64_t));
+  before[0] = piece_of(tails->counts, count * c->tails * sizeof(uint64_t));
+  before[1] = piece_of(digest, sizeof *digest);
+  for (size_t i = 0; i < c->tails; i++)
+    behind[i] = piece_of(tails->entries[i], totals[i] * c->identity.entry_bytes[i]);
+  return 2 + (int)c->tails;
+}
+
+int checkpoint_append(checkpoint *c, uint64_t first, uint64_t count, const void *rows, const checkpoint_tails *tails,
+                      message *why) {
   const uint64_t tasks = c->identity.tasks;
   if (!(count >= 1 && first < tasks && count <= tasks - first))
     return refuse(why, EXIT_FILES, "%s: tasks %llu to %llu are not among the %llu of the study", c->own_path,
                   (unsigned long long)first, (unsigned long long)(first + count - 1), (unsigned long long)tasks);
   if (c->own_fd < 0)
     return refuse(why, EXIT_FILES, "%s: not open for writing", c->folder);
-  record_header header = {
-      .magic = RECORD_MAGIC, .first = first, .count = count, .bytes = count * c->identity.row_bytes};
-  header.rows = digest_bytes(0, rows, header.bytes);
+  record_header header = {.magic = RECORD_MAGIC, .first = first, .count = count};
+  struct iovec pieces[4 + CHECKPOINT_MOST_TAILS];
+  uint64_t digest;
+  pieces[0] = piece_of(&header, sizeof header);
+  const int rows_at = c->tails ? 3 : 1;
+  const int piece_count = 2 + tail_pieces(c, count, tails, &digest, pieces + 1, pieces + 4);
+  pieces[rows_at] = piece_of(rows, count * c->identity.row_bytes);
+  for (int i = 1; i < piece_count; i++) {
+    header.bytes += pieces[i].iov_len;
+    header.rows = digest_bytes(header.rows, pieces[i].iov_base, pieces[i].iov_len);
+  }
   header.check = record_header_check(&header);
-  struct iovec pieces[] = {{.iov_base = &header, .iov_len = sizeof header},
-                           {.iov_base = (void *)(uintptr_t)rows, .iov_len = header.bytes}};
-  return append_pieces(c, pieces, 2, why);
+  return append_pieces(c, pieces, piece_count, why);
 }
 
 /* Some file systems cannot sync folders (EINVAL), and a parent may be closed to reading (EACCES): both leave the folder

@@ -1,9 +1,11 @@
 /* The checkpoint of a run: a folder with one file per rank, to which the rank appends its finished chunks.
  *
- * A record is (magic, first task, number of tasks, bytes, digests) and the rows; it is never rewritten. Reading goes to
- * the first record of a file that does not verify. A run that resumes opens new files beside the old ones, so that a
- * torn tail is never written over. The rows of finished tasks are read back from here when the result is assembled:
- * no rank holds more than it is working on. What is kept in memory is 32 bytes per record.
+ * A record is (magic, first task, number of tasks, bytes, digests) and the rows; it is never rewritten. Where tasks
+ * have tails (so many entries each, of a fixed size, behind their rows), the numbers of entries of every task stand
+ * before the rows, under a digest of their own, and the entries behind them, tail by tail. Reading goes to the first
+ * record of a file that does not verify. A run that resumes opens new files beside the old ones, so that a torn tail is
+ * never written over. The rows of finished tasks are read back from here when the result is assembled: no rank holds
+ * more than it is working on. What is kept in memory is 32 bytes per record, and 8 per record and tail.
  *
  * The ranks share nothing but the files. They number the missing tasks alike because they open the checkpoint before
  * any of them appends (a barrier between), and they read each other's rows after a barrier and a rescan. */
@@ -17,13 +19,22 @@
 
 typedef struct checkpoint checkpoint;
 
+enum { CHECKPOINT_MOST_TAILS = 4 };
+
 /** What a checkpoint belongs to; every file begins with it. */
 typedef struct checkpoint_identity {
   uint64_t digest; /* of the study */
   uint64_t tasks;
-  uint64_t row_bytes; /* >= 1 */
-  char version[64];   /* of the program: rows of different versions are not mixed */
+  uint64_t row_bytes;                          /* >= 1 */
+  uint64_t entry_bytes[CHECKPOINT_MOST_TAILS]; /* of each tail; 0 behind the last one */
+  char version[64];                            /* of the program: rows of different versions are not mixed */
 } checkpoint_identity;
+
+/** The tails of the tasks of a chunk. */
+typedef struct checkpoint_tails {
+  const uint64_t *counts;                     /* [tasks][tails] entries of each task */
+  const void *entries[CHECKPOINT_MOST_TAILS]; /* of each tail, those of one task after another */
+} checkpoint_tails;
 
 /** FNV-1a, 64 bits, continued from `seed` (0 to begin). Any single changed byte changes it. About 1 GB/s. */
 uint64_t digest_bytes(uint64_t seed, const void *bytes, size_t size);
@@ -52,10 +63,12 @@ uint64_t checkpoint_missing(const checkpoint *c, uint64_t n, uint64_t *task);
  *  @returns 0 or EXIT_FILES. */
 int checkpoint_begin(checkpoint *c, int rank, message *why);
 
-/** Appends one finished chunk, rows [count][row_bytes]; in the page cache when it returns, safe from the death of this
- *  process. After a failure (a full disk) the file ends with its last good record.
+/** Appends one finished chunk, rows [count][row_bytes] and the tails (NULL when there are none); in the page cache when
+ * it returns, safe from the death of this process. After a failure (a full disk) the file ends with its last good
+ * record.
  *  @returns 0 or EXIT_FILES. */
-int checkpoint_append(checkpoint *c, uint64_t first, uint64_t count, const void *rows, message *why);
+int checkpoint_append(checkpoint *c, uint64_t first, uint64_t count, const void *rows, const checkpoint_tails *tails,
+                      message *why);
 
 /** fdatasync of this rank's file and, the first time, of the folder and its parent: safe from the death of the machine.
  *  @returns 0 (also when this rank has no file) or EXIT_FILES. */
@@ -65,6 +78,24 @@ int checkpoint_sync(checkpoint *c, message *why);
  *  was verified last does not digest it again.
  *  @returns 0 or EXIT_FILES. */
 int checkpoint_read(checkpoint *c, uint64_t first, uint64_t count, void *rows, message *why);
+
+/** Counts the entries of all tails, of which the functions below tell, from the records as of the last scan.
+ *  @returns 0, EXIT_FILES, or EXIT_RUN out of memory */
+int checkpoint_count_entries(checkpoint *c, message *why);
+
+/** Number of entries of a tail in all tasks that were counted. */
+uint64_t checkpoint_entries(const checkpoint *c, size_t tail);
+
+/** Number of entries of a tail in the tasks before each of first, ..., first + count - 1; that of the task behind the
+ *  last is the number of all. Every task before has been counted.
+ *  @param stride  from one offset to the next, in numbers
+ *  @returns 0 or EXIT_FILES. */
+int checkpoint_read_offsets(checkpoint *c, size_t tail, uint64_t first, uint64_t count, uint64_t *offsets,
+                            size_t stride, message *why);
+
+/** Reads entries [first, first + count) of a tail, numbered through all tasks, verifying digests as checkpoint_read.
+ *  @returns 0 or EXIT_FILES. */
+int checkpoint_read_entries(checkpoint *c, size_t tail, uint64_t first, uint64_t count, void *entries, message *why);
 
 /** Deletes the checkpoint's own files (not the lock) and the folder if that leaves it empty. A missing folder is fine.
  *  @returns 0 or EXIT_FILES. */

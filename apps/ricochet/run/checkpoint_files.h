@@ -1,7 +1,8 @@
 /* The files of a checkpoint, for its own sources only: names, what is in them, and the state that an open one has.
  *
- * A file `part-GENERATION-RANK` is one part_header and then records, each a record_header and its rows, in the byte
- * order of the machine (another order does not find its magic number). */
+ * A file `part-GENERATION-RANK` is one part_header and then records, in the byte order of the machine (another order
+ * does not find its magic number). A record is a record_header and, with tails, counts [count][tails] and their digest;
+ * then rows [count][row_bytes]; then the entries of each tail. */
 #ifndef RICOCHET_APP_CHECKPOINT_FILES_H
 #define RICOCHET_APP_CHECKPOINT_FILES_H
 
@@ -13,7 +14,7 @@
 
 #define PART_MAGIC   UINT64_C(0x74706b6368636972) /* "ricchkpt" */
 #define RECORD_MAGIC UINT64_C(0x64726f6365726372) /* "rcrecord" */
-enum { PART_FORMAT = 1, PART_BUFFER_BYTES = 1 << 20, PART_NAME_BYTES = 40 };
+enum { PART_FORMAT = 2, PART_BUFFER_BYTES = 1 << 20, PART_NAME_BYTES = 40 };
 
 typedef struct part_header {
   uint64_t magic, format;
@@ -22,13 +23,13 @@ typedef struct part_header {
 } part_header;
 
 typedef struct record_header {
-  uint64_t magic, first, count, bytes; /* bytes = count * row_bytes */
-  uint64_t rows;                       /* digest of the rows */
+  uint64_t magic, first, count, bytes; /* bytes: all that follows the header */
+  uint64_t rows;                       /* digest of these */
   uint64_t check;                      /* digest of all that stands before */
 } record_header;
 
 /* Written as they are: no padding that could hold anything. */
-_Static_assert(sizeof(checkpoint_identity) == 88 && sizeof(part_header) == 112, "part header has padding");
+_Static_assert(sizeof(checkpoint_identity) == 120 && sizeof(part_header) == 144, "part header has padding");
 _Static_assert(sizeof(record_header) == 48, "record header has padding");
 
 /** A file found in the folder. */
@@ -45,6 +46,8 @@ struct checkpoint {
   part *parts;         /* [part_count], in the order of generation and rank, later finds after earlier ones */
   size_t part_count;
   checkpoint_index index;
+  size_t tails;
+  uint64_t *before; /* [ranges + 1][tails] entries in the ranges before; NULL until they are counted */
 
   int own_fd; /* -1 before checkpoint_begin and after a failure that could not be undone */
   char own_path[PATH_MAX];
@@ -56,6 +59,11 @@ struct checkpoint {
   size_t verified_part;     /* where the record stands that checkpoint_read verified last */
   uint64_t verified_offset; /* 0 when there is none */
   record_header verified;   /* its header */
+  size_t counts_part;       /* where the record stands whose counts are held */
+  uint64_t counts_offset;   /* 0 when there is none */
+  record_header counted;    /* its header */
+  uint64_t *counts;         /* [counted.count][tails] */
+  uint64_t counts_room;     /* numbers */
   unsigned char *buffer;    /* [PART_BUFFER_BYTES] */
 };
 
@@ -70,6 +78,31 @@ bool part_name_parse(const char *name, unsigned *generation, unsigned *rank);
 
 /** EXIT_FILES with "PATH: cannot WHAT: reason of errno". */
 int refuse_part(const char *path, const char *what, message *why);
+
+/** Bytes between a record's header and its rows. */
+uint64_t counts_bytes(const checkpoint *c, uint64_t count);
+
+/** What a look at a file can find: something that verifies, something that does not (the end, a torn tail, a flipped
+ *  bit), or an error of the file system, which is in `why`. */
+typedef enum finding { GOOD, BAD, UNREADABLE } finding;
+
+/** Makes read_fd the file of this part. @returns 0 or EXIT_FILES. */
+int open_part(checkpoint *c, size_t number, message *why);
+
+/** Reads from the open part; a file that ends earlier is BAD. */
+finding read_part(const checkpoint *c, void *bytes, size_t size, uint64_t offset, message *why);
+
+/** Reads and verifies a record's header in the open part. */
+finding read_record_header(const checkpoint *c, uint64_t offset, record_header *header, message *why);
+
+/** EXIT_FILES: the record of a range does not verify. */
+int refuse_record(const checkpoint *c, const index_range *range, message *why);
+
+/** Opens the record that a range stands in and verifies it, unless it is the one that was verified last. */
+int select_record(checkpoint *c, const index_range *range, message *why);
+
+/** Reads bytes of the open part that have been verified. @returns 0 or EXIT_FILES. */
+int read_verified(const checkpoint *c, void *bytes, uint64_t size, uint64_t offset, message *why);
 
 /** Looks for new parts in the folder, reads all parts on from where the last scan ended and settles the index.
  *  @param rows  digest the rows too, not only the headers */

@@ -19,8 +19,7 @@ static int refuse_number(const checkpoint *c, size_t number, const char *what, m
   return refuse_part(path, what, why);
 }
 
-/* Makes read_fd the file of this part. */
-static int open_part(checkpoint *c, size_t number, message *why) {
+int open_part(checkpoint *c, size_t number, message *why) {
   if (c->read_fd >= 0 && c->read_part == number)
     return 0;
   if (c->read_fd >= 0)
@@ -48,12 +47,7 @@ static int64_t read_at(int fd, void *bytes, size_t size, uint64_t offset) {
   return (int64_t)done;
 }
 
-/* What a look at a file can find: something that verifies, something that does not (the end, a torn tail, a flipped
- * bit), or an error of the file system, which is in `why`. */
-typedef enum finding { GOOD, BAD, UNREADABLE } finding;
-
-/* Reads from the open part; a file that ends earlier is BAD. */
-static finding read_part(const checkpoint *c, void *bytes, size_t size, uint64_t offset, message *why) {
+finding read_part(const checkpoint *c, void *bytes, size_t size, uint64_t offset, message *why) {
   const int64_t got = read_at(c->read_fd, bytes, size, offset);
   if (got < 0) {
     refuse_number(c, c->read_part, "read", why);
@@ -62,14 +56,20 @@ static finding read_part(const checkpoint *c, void *bytes, size_t size, uint64_t
   return (uint64_t)got == size ? GOOD : BAD;
 }
 
-static finding read_record_header(const checkpoint *c, uint64_t offset, record_header *header, message *why) {
+/* What a record of so many tasks is long at least, and exactly when there are no tails. */
+static bool length_fits(const checkpoint *c, const record_header *header) {
+  const uint64_t least = header->count * c->identity.row_bytes + counts_bytes(c, header->count);
+  return c->tails ? header->bytes >= least : header->bytes == least;
+}
+
+finding read_record_header(const checkpoint *c, uint64_t offset, record_header *header, message *why) {
   const finding found = read_part(c, header, sizeof *header, offset, why);
   if (found != GOOD)
     return found;
   const uint64_t tasks = c->identity.tasks;
   const bool good = header->magic == RECORD_MAGIC && header->check == record_header_check(header) &&
                     header->count >= 1 && header->first < tasks && header->count <= tasks - header->first &&
-                    header->bytes == header->count * c->identity.row_bytes;
+                    length_fits(c, header);
   return good ? GOOD : BAD;
 }
 
@@ -93,7 +93,8 @@ static int compare_identity(const char *path, const checkpoint_identity *found, 
   if (strcmp(found->version, expected->version) != 0)
     return refuse(why, EXIT_USAGE, "%s: written by version \"%s\", this is \"%s\"", path, found->version,
                   expected->version);
-  if (found->tasks != expected->tasks || found->row_bytes != expected->row_bytes)
+  if (found->tasks != expected->tasks || found->row_bytes != expected->row_bytes ||
+      memcmp(found->entry_bytes, expected->entry_bytes, sizeof found->entry_bytes) != 0)
     return refuse(why, EXIT_USAGE,
                   "%s: shape of another study: %llu tasks with rows of %llu bytes, expected %llu of %llu", path,
                   (unsigned long long)found->tasks, (unsigned long long)found->row_bytes,
@@ -207,14 +208,22 @@ static int find_parts(checkpoint *c, message *why) {
 }
 
 int checkpoint_scan(checkpoint *c, bool rows, message *why) {
+  free(c->before); /* counted before the ranges change */
+  c->before = NULL;
   int code = find_parts(c, why);
   for (size_t i = 0; !code && i < c->part_count; i++)
     code = scan_part(c, i, rows, why);
   return code ? code : index_settle(&c->index, c->identity.tasks, why);
 }
 
-/* Opens the record that a range stands in and verifies it, unless it is the one that was verified last. */
-static int select_record(checkpoint *c, const index_range *range, message *why) {
+int refuse_record(const checkpoint *c, const index_range *range, message *why) {
+  char path[PATH_MAX];
+  path_of(c, range->part, path);
+  return refuse(why, EXIT_FILES, "%s: the record of tasks %llu to %llu has been damaged", path,
+                (unsigned long long)range->first, (unsigned long long)(range->first + range->count - 1));
+}
+
+int select_record(checkpoint *c, const index_range *range, message *why) {
   const int code = open_part(c, range->part, why);
   if (code || (c->verified_offset == range->offset && c->verified_part == range->part))
     return code;
@@ -224,14 +233,19 @@ static int select_record(checkpoint *c, const index_range *range, message *why) 
     found = verify_rows(c, range->offset, &c->verified, why);
   if (found == UNREADABLE)
     return EXIT_FILES;
-  char path[PATH_MAX];
-  path_of(c, range->part, path);
   if (found == BAD)
-    return refuse(why, EXIT_FILES, "%s: the record of tasks %llu to %llu has been damaged", path,
-                  (unsigned long long)range->first, (unsigned long long)(range->first + range->count - 1));
+    return refuse_record(c, range, why);
   c->verified_part = range->part;
   c->verified_offset = range->offset;
   return 0;
+}
+
+int read_verified(const checkpoint *c, void *bytes, uint64_t size, uint64_t offset, message *why) {
+  const finding found = read_part(c, bytes, size, offset, why);
+  if (found != BAD)
+    return found == GOOD ? 0 : EXIT_FILES;
+  errno = EIO; /* it was longer when it was verified */
+  return refuse_number(c, c->read_part, "read", why);
 }
 
 int checkpoint_read(checkpoint *c, uint64_t first, uint64_t count, void *rows, message *why) {
@@ -240,19 +254,16 @@ int checkpoint_read(checkpoint *c, uint64_t first, uint64_t count, void *rows, m
     const index_range *range = index_find(&c->index, first);
     if (!range)
       return refuse(why, EXIT_FILES, "%s: task %llu is in no record", c->folder, (unsigned long long)first);
-    const int code = select_record(c, range, why);
+    int code = select_record(c, range, why);
     if (code)
       return code;
     const uint64_t there = range->count - (first - range->first), step = count < there ? count : there;
     const size_t bytes = step * c->identity.row_bytes;
     const uint64_t skipped = (first - c->verified.first) * c->identity.row_bytes;
-    const finding found = read_part(c, to, bytes, range->offset + sizeof c->verified + skipped, why);
-    if (found == BAD) {
-      errno = EIO; /* it was longer when it was verified */
-      return refuse_number(c, range->part, "read", why);
-    }
-    if (found == UNREADABLE)
-      return EXIT_FILES;
+    const uint64_t rows_at = range->offset + sizeof c->verified + counts_bytes(c, c->verified.count);
+    code = read_verified(c, to, bytes, rows_at + skipped, why);
+    if (code)
+      return code;
     to += bytes;
     first += step;
     count -= step;

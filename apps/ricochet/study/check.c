@@ -1,15 +1,57 @@
 /* What the schema's rows cannot say: how the values of several keys fit together. */
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "number.h"
 #include "parts.h"
 
-static int check_missing(const study *s, message *why) {
+static bool is_kind(const study *s, const char *kind) {
+  return strcmp(s->values[KEY_KIND].text, kind) == 0;
+}
+
+/* A sweep over a key or an element of its list, NULL when there is none. */
+static const sweep_entry *any_sweep_over(const study *s, study_key key) {
+  for (size_t i = 0; i < s->sweep_count; i++)
+    if (s->sweeps[i].view.key == key)
+      return &s->sweeps[i];
+  return NULL;
+}
+
+/* Node that gives a key or sweeps it, 0 when it has its default. */
+static int node_of_key(const study *s, study_key key) {
+  const sweep_entry *e = any_sweep_over(s, key);
+  return s->values[key].node ? s->values[key].node : e ? e->nodes[SWEEP_PARAMETER] : 0;
+}
+
+/* Node of a section, or of a sweep that stands for it; 0 when nothing of it is given. */
+static int node_of_section(const study *s, const document *d, const char *section) {
+  const size_t length = strlen(section);
+  int node = document_find(d, DOCUMENT_ROOT, section);
+  for (int key = 0; key < KEY_COUNT && !node; key++) {
+    const char *path = schema_row((study_key)key)->path;
+    if (strncmp(path, section, length) == 0 && path[length] == '.')
+      node = node_of_key(s, (study_key)key);
+  }
+  return node;
+}
+
+/* Whether the study has a periodic orbit to compute: its kind is `orbits`, or it starts on one. */
+static bool has_orbit(const study *s, const document *d) {
+  return is_kind(s, "orbits") || node_of_section(s, d, "orbit");
+}
+
+static bool is_needed(const study *s, const document *d, const schema_entry *row) {
+  if (!row->required || (row == schema_row(KEY_ORBIT_PERIOD) && !has_orbit(s, d)))
+    return false;
+  return row == schema_row(KEY_KIND) || schema_concerns(row, s->values[KEY_KIND].text);
+}
+
+static int check_missing(const study *s, const document *d, message *why) {
   const source file = {.name = s->name};
   for (int key = 0; key < KEY_COUNT; key++) {
     const schema_entry *row = schema_row((study_key)key);
-    if (!row->required || s->values[key].present)
+    if (s->values[key].present || !is_needed(s, d, row))
       continue;
     char allowed[256];
     schema_allowed(row, allowed, sizeof allowed);
@@ -18,31 +60,94 @@ static int check_missing(const study *s, message *why) {
   return 0;
 }
 
-static int check_floor(const study *s, const document *d, message *why) {
-  const typed_value *obstacle = &s->values[KEY_MODEL_FLOOR];
-  const double particles = s->values[KEY_MODEL_PARTICLES].numbers[0];
-  if (!obstacle->list || (double)obstacle->count == particles)
+static int check_kind(const study *s, const document *d, message *why) {
+  const char *kind = s->values[KEY_KIND].text;
+  for (int key = 0; kind && key < KEY_COUNT; key++) {
+    const schema_entry *row = schema_row((study_key)key);
+    const int node = node_of_key(s, (study_key)key);
+    if (node && !schema_concerns(row, kind))
+      return document_refuse(d, node, why, "%s is a key of kind: %s, and this is kind: %s", row->path, row->kinds,
+                             kind);
+  }
+  return 0;
+}
+
+static int check_start(const study *s, const document *d, message *why) {
+  const source file = {.name = s->name};
+  const int start = node_of_section(s, d, "start"), orbit = node_of_section(s, d, "orbit");
+  if (!is_kind(s, "trajectory") || !start != !orbit)
     return 0;
-  return document_refuse(d, obstacle->node, why,
-                         "model.floor has %zu elements, expected %.0f, one per particle, or a single number",
-                         obstacle->count, particles);
+  if (!start)
+    return source_refuse(&file, 0, why,
+                         "kind: trajectory has neither start nor orbit, expected exactly one of the two sections");
+  return document_refuse(d, start, why,
+                         "kind: trajectory has both start and orbit, expected exactly one of the two sections");
 }
 
-static int refuse_restitution(const document *d, int node, const char *label, double value, message *why) {
-  char shown[32];
-  number_show(value, shown, sizeof shown);
-  return document_refuse(d, node, why, "%s = %s is not in this version: orbits of an undamped chain need restitution 1",
-                         label, shown);
+static int check_lengths(const study *s, const document *d, message *why) {
+  const double particles = s->values[KEY_MODEL_PARTICLES].numbers[0];
+  for (int key = 0; key < KEY_COUNT; key++) {
+    const typed_value *value = &s->values[key];
+    const schema_entry *row = schema_row((study_key)key);
+    if (row->per_particle && value->list && (double)value->count != particles)
+      return document_refuse(d, value->node, why,
+                             "%s has %zu elements, expected %.0f, one per particle, or a single number", row->path,
+                             value->count, particles);
+  }
+  return 0;
 }
 
-static int check_restitution(const study *s, const document *d, message *why) {
-  const typed_value *value = &s->values[KEY_MODEL_RESTITUTION];
-  if (value->node && value->numbers[0] != 1)
-    return refuse_restitution(d, value->node, "model.restitution", value->numbers[0], why);
-  const sweep_entry *e = sweep_over(s, KEY_MODEL_RESTITUTION, -1);
-  for (size_t i = 0; e && i < e->view.points; i++)
-    if (e->values[i] != 1)
-      return refuse_restitution(d, sweep_value_node(d, e, i), "swept model.restitution", e->values[i], why);
+static int refuse_for_orbits(const study *s, const document *d, int node, study_key key, const char *label,
+                             double value, message *why) {
+  const char *path = schema_row(key)->path, *fallback = schema_row(key)->fallback;
+  char shown[32] = "null";
+  if (value > -INFINITY)
+    number_show(value, shown, sizeof shown);
+  if (key == KEY_MODEL_RESTITUTION)
+    return document_refuse(
+        d, node, why, "%s = %s is not in this version: orbits of an undamped chain need restitution 1", label, shown);
+  if (is_kind(s, "orbits"))
+    return document_refuse(d, node, why, "%s = %s, but kind: orbits needs %s = %s", label, shown, path, fallback);
+  return document_refuse(d, node, why, "%s = %s, but a start on an orbit needs %s = %s", label, shown, path, fallback);
+}
+
+/* Every value of a key, also the swept ones, is the default. */
+static int check_default(const study *s, const document *d, study_key key, double fallback, message *why) {
+  const typed_value *value = &s->values[key];
+  char label[128];
+  for (size_t i = 0; value->node && i < value->count; i++) {
+    if (value->numbers[i] == fallback)
+      continue;
+    snprintf(label, sizeof label, value->list ? "%s[%zu]" : "%s", schema_row(key)->path, i);
+    return refuse_for_orbits(s, d, typed_item_node(d, value, i), key, label, value->numbers[i], why);
+  }
+  for (size_t k = 0; k < s->sweep_count; k++) {
+    const sweep_entry *e = &s->sweeps[k];
+    for (size_t i = 0; e->view.key == key && i < e->view.points; i++) {
+      if (e->values[i] == fallback)
+        continue;
+      snprintf(label, sizeof label, "swept %s", e->view.name);
+      return refuse_for_orbits(s, d, sweep_value_node(d, e, i), key, label, e->values[i], why);
+    }
+  }
+  return 0;
+}
+
+/* Periodic orbits are those of the linear, conservative chain with rigid floors. */
+static int check_defaults(const study *s, const document *d, message *why) {
+  for (int key = 0; key < KEY_COUNT; key++) {
+    const schema_entry *row = schema_row((study_key)key);
+    typed_value fallback;
+    if (!row->orbits_default)
+      continue;
+    if (!typed_default(row, &fallback))
+      return refuse(why, EXIT_RUN, "%s: out of memory", s->name);
+    const double number = fallback.numbers[0];
+    typed_clear(&fallback);
+    const int code = check_default(s, d, (study_key)key, number, why);
+    if (code)
+      return code;
+  }
   return 0;
 }
 
@@ -160,13 +265,23 @@ static int check_special_points(const study *s, const document *d, message *why)
                          "it requires exactly one sweep entry, over model.gamma or orbit.period");
 }
 
-int study_check(const study *s, const document *d, message *why) {
-  int code = check_missing(s, why);
-  if (!code)
-    code = check_floor(s, d, why);
-  if (!code)
-    code = check_restitution(s, d, why);
+/* What an orbit needs, of a study that has one. */
+static int check_orbit(const study *s, const document *d, message *why) {
+  if (!has_orbit(s, d))
+    return 0;
+  int code = check_defaults(s, d, why);
   if (!code)
     code = check_pattern(s, d, why);
   return code ? code : check_special_points(s, d, why);
+}
+
+int study_check(const study *s, const document *d, message *why) {
+  int code = check_missing(s, d, why);
+  if (!code)
+    code = check_kind(s, d, why);
+  if (!code)
+    code = check_start(s, d, why);
+  if (!code)
+    code = check_lengths(s, d, why);
+  return code ? code : check_orbit(s, d, why);
 }

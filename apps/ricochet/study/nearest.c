@@ -71,6 +71,8 @@ void schema_nearest(const char *path, char *near, size_t size) {
       consider(&s, schema_sweep_row((sweep_key)key)->path);
     consider(&s, "model");
     consider(&s, "orbit");
+    consider(&s, "start");
+    consider(&s, "time");
     consider(&s, "sweep");
   }
   finish(&s, near, size);

@@ -31,7 +31,12 @@ static void print_key(FILE *out, const schema_entry *row) {
     fprintf(out, "%s", !row->list ? "yes" : row->scalar ? "yes, or an element" : "an element");
   else
     fprintf(out, "no: %s", row->no_sweep);
-  fprintf(out, " | %s |\n", row->doc);
+  fprintf(out, " | %s", row->doc);
+  if (row->kinds)
+    fprintf(out, " For `kind: %s`.", row->kinds);
+  if (row->orbits_default)
+    fprintf(out, " Orbits need the default.");
+  fprintf(out, " |\n");
 }
 
 static void print_rules(FILE *out) {
@@ -45,7 +50,9 @@ static void print_rules(FILE *out) {
       "quoted\n  numbers and trailing characters are not numbers.\n"
       "- Integers may be written in any of these ways as long as the value is integral: `1e6`.\n"
       "- Flags are `true` or `false`; `yes` and `on` are not flags.\n"
-      "- `null` in `model.floor` means no obstacle: for all particles, or for one in a list.\n"
+      "- `null` in `model.floor` and `model.wall` means no obstacle: for all particles, or for one in a list.\n"
+      "- A trajectory starts either at the state of the section `start` or on the orbit of the section `orbit`; orbits "
+      "are\n  those of the linear chain without damping, and need the defaults of the keys that say so.\n"
       "- Indices of particles and list elements count from 0.\n"
       "- Unknown keys, duplicate keys, anchors, aliases, tags, a second document, more than %d levels of nesting, and "
       "files\n  over %d MiB are refused.\n"
@@ -92,5 +99,5 @@ void schema_reference(FILE *out) {
   for (int key = 0; key < KEY_COUNT; key++)
     if (schema_row((study_key)key)->later_words)
       print_later_words(out, schema_row((study_key)key));
-  fprintf(out, "- the sections `start`, `time` and `iterate`\n");
+  fprintf(out, "- the section `iterate`\n");
 }

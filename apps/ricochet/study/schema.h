@@ -17,6 +17,19 @@ typedef enum study_key {
   KEY_MODEL_GAMMA,
   KEY_MODEL_FLOOR,
   KEY_MODEL_RESTITUTION,
+  KEY_MODEL_MASS,
+  KEY_MODEL_STIFFNESS,
+  KEY_MODEL_QUADRATIC,
+  KEY_MODEL_CUBIC,
+  KEY_MODEL_DAMPING,
+  KEY_MODEL_LINK_QUADRATIC,
+  KEY_MODEL_LINK_CUBIC,
+  KEY_MODEL_LINK_DAMPING,
+  KEY_MODEL_WALL,
+  KEY_MODEL_HERTZ,
+  KEY_MODEL_FORCE,
+  KEY_MODEL_FREQUENCY,
+  KEY_MODEL_PHASE,
   KEY_ORBIT_PERIOD,
   KEY_ORBIT_AT_START,
   KEY_ORBIT_AT_HALF,
@@ -25,6 +38,13 @@ typedef enum study_key {
   KEY_ORBIT_SPECIAL_POINTS,
   KEY_ORBIT_MULTIPLIERS,
   KEY_ORBIT_VERIFY,
+  KEY_START_Q,
+  KEY_START_V,
+  KEY_TIME_DURATION,
+  KEY_TIME_SAMPLES,
+  KEY_TIME_FLOW,
+  KEY_TIME_TOLERANCE,
+  KEY_TIME_EVENTS_PER_TIME,
   KEY_COUNT
 } study_key;
 
@@ -42,13 +62,16 @@ typedef struct schema_entry {
   bool list;            /* a list of `type` is allowed */
   bool scalar;          /* a single value is allowed */
   bool null;            /* null is allowed, for a single value and inside a list: read as minus infinity ("none") */
-  bool required;        /* no default */
+  bool required;        /* no default; a study needs it, if it concerns its kind (see study_check for orbits) */
   const char *fallback; /* default as YAML text, "" when absent by default */
   double low, high;     /* range of a number, ends included unless open */
   bool low_open, high_open;
   const char *words;       /* allowed words, "impulse|dense" */
   const char *later_words; /* words of a later version: refused with "not in this version" */
   bool later;              /* flag of a later version: `false` is accepted, `true` is refused as above */
+  const char *kinds;       /* kinds of study that the key is for, "orbits|trajectory"; NULL: all */
+  bool per_particle;       /* a list has one element per particle */
+  bool orbits_default;     /* periodic orbits are computed for the default only */
   bool sweep;              /* numbers only: can be the parameter of a sweep */
   const char *no_sweep;    /* why it cannot be swept, for the refusal */
   const char *units;       /* NULL for dimensionless */
@@ -77,9 +100,9 @@ const schema_entry *schema_sweep_row(sweep_key key);
 /** Key of a path, KEY_COUNT when there is none. */
 study_key schema_find(const char *path);
 
-/** Whether keys of the table stand under this top-level name: `model`, `orbit`. */
+/** Whether keys of the table stand under this top-level name: `model`, `orbit`, `start`, `time`. */
 bool schema_is_section(const char *name);
-/** Whether a top-level name belongs to a later version: `start`, `time`, `iterate`. */
+/** Whether a top-level name belongs to a later version: `iterate`. */
 bool schema_is_later_section(const char *name);
 
 /** Writes the known key nearest to `path` into `near`, or "" when none is near enough to suggest. Nearness is the edit
@@ -89,6 +112,11 @@ bool schema_is_later_section(const char *name);
 void schema_nearest(const char *path, char *near, size_t size);
 /** The same among the keys that can be swept. */
 void schema_nearest_parameter(const char *path, char *near, size_t size);
+
+/** Whether a key is for studies of this kind. */
+bool schema_concerns(const schema_entry *entry, const char *kind);
+/** Whether a word is one of "a|b|c"; NULL holds none. @param length  of the word */
+bool schema_is_among(const char *word, size_t length, const char *words);
 
 /** What an entry allows, in words: "a number from 0 to 1", "one of periodic, fixed, free". */
 void schema_allowed(const schema_entry *entry, char *text, size_t size);

@@ -50,7 +50,8 @@ static int read_top(study *s, const document *d, const yaml_node_pair_t *pair, m
     return read_section(s, d, name, pair->value, why);
   if (schema_is_later_section(name))
     return document_refuse(d, pair->key, why,
-                           "the section '%s' is not in this version, expected model, orbit and sweep", name);
+                           "the section '%s' is not in this version, expected model, orbit, start, time and sweep",
+                           name);
   const study_key key = schema_find(name);
   if (key != KEY_COUNT && !strchr(name, '.'))
     return read_key(s, d, pair->key, pair->value, key, why);

@@ -89,9 +89,9 @@ static int refuse_parameter(const reading *r, const char *name, const char *path
   schema_nearest_parameter(path, near, sizeof near);
   if (*near)
     return document_refuse(r->d, node, r->why, "unknown sweep parameter '%s'; did you mean '%s'?", shown, near);
-  return document_refuse(r->d, node, r->why,
-                         "unknown sweep parameter '%s', expected a number of model or orbit such as model.gamma",
-                         shown);
+  return document_refuse(
+      r->d, node, r->why,
+      "unknown sweep parameter '%s', expected a number of model, orbit, start or time such as model.gamma", shown);
 }
 
 /* A parameter must name one number: a scalar by its key, an element of a list by its index. */

@@ -75,14 +75,8 @@ static int read_flag(const reading *r, double *number) {
 
 /* Whether a scalar node holds one of "a|b|c". */
 static bool is_one_of(const reading *r, const char *words) {
-  for (const char *word = words; word && *word;) {
-    const size_t length = strcspn(word, "|");
-    const yaml_node_t *n = document_node(r->d, r->node);
-    if (n->data.scalar.length == length && memcmp(n->data.scalar.value, word, length) == 0)
-      return true;
-    word += length + (word[length] == '|');
-  }
-  return false;
+  const yaml_node_t *n = document_node(r->d, r->node);
+  return schema_is_among((const char *)n->data.scalar.value, n->data.scalar.length, words);
 }
 
 static int read_text(const reading *r, char **text) {
@@ -156,6 +150,8 @@ bool typed_default(const schema_entry *row, typed_value *value) {
     return value->numbers != NULL;
   if (row->type == VALUE_FLAG)
     value->numbers[0] = strcmp(row->fallback, "true") == 0;
+  else if (strcmp(row->fallback, "null") == 0)
+    value->numbers[0] = -INFINITY;
   else
     number_read(row->fallback, strlen(row->fallback), &value->numbers[0]);
   return true;

@@ -88,5 +88,7 @@ void schema_names(const char *section, char *text, size_t size) {
     append_name(section, schema_sweep_row((sweep_key)key)->path, text, size);
   append_name(section, "model", text, size);
   append_name(section, "orbit", text, size);
+  append_name(section, "start", text, size);
+  append_name(section, "time", text, size);
   append_name(section, "sweep", text, size);
 }

@@ -20,14 +20,15 @@ void chain_model_clear(chain_model *m) {
   m->floors = NULL;
 }
 
-static ric_ends ends_of(const char *word) {
+ric_ends chain_model_ends(const study_values *v) {
+  const char *word = value_word(v, KEY_MODEL_ENDS);
   if (strcmp(word, "fixed") == 0)
     return RIC_ENDS_FIXED;
   return strcmp(word, "free") == 0 ? RIC_ENDS_FREE : RIC_ENDS_PERIODIC;
 }
 
 void chain_model_read(chain_model *m, const study_values *v) {
-  m->chain.ends = ends_of(value_word(v, KEY_MODEL_ENDS));
+  m->chain.ends = chain_model_ends(v);
   m->chain.gamma = value_number(v, KEY_MODEL_GAMMA, 0);
   m->chain.floors = m->floors;
   if (!m->floors)

@@ -19,6 +19,9 @@ void chain_model_clear(chain_model *m);
 /** Reads the chain of the present task. */
 void chain_model_read(chain_model *m, const study_values *v);
 
+/** What is at the ends. */
+ric_ends chain_model_ends(const study_values *v);
+
 /** Reads the pattern of the present task; the caller destroys it. */
 ric_status chain_model_pattern(const study_values *v, ric_pattern **pattern, ric_error *error);
 

@@ -9,11 +9,22 @@
 #include <stdint.h>
 
 #include "../study/study.h"
+#include "records.h"
 #include "table.h"
+
+enum { KIND_MOST_TAILS = 2 };
+
+/** A table of records, of which each task has as many as it has: task i owns the records offset[i] to offset[i + 1]. */
+typedef struct tail {
+  table records;                /* its row_axis is the scale of all records: "impact_row" */
+  const char *offset, *meaning; /* the data set of the offsets, "impact_offset", and what it says */
+} tail;
 
 /** What a study will take and give. */
 typedef struct kind_plan {
-  table rows;          /* a row per task */
+  table rows; /* a row per task */
+  tail tails[KIND_MOST_TAILS];
+  size_t tail_count;
   double memory;       /* bytes that one rank computes with */
   const char *outcome; /* name of the column whose words are counted at the end */
 } kind_plan;
@@ -34,8 +45,11 @@ typedef struct kind {
   int (*plan)(const study *s, kind_plan *plan, message *why);
   /** @param poll  handed to the library; non-zero stops a task */
   int (*open)(const study *s, ric_poll poll, worker **out, message *why);
-  /** Fills the row of a task. @returns 0, or -1 when the poll stopped it. */
-  int (*evaluate)(worker *w, const table *layout, uint64_t task, unsigned char *row);
+  /** Fills the row of a task and adds its records.
+   *  @param row  [plan->rows.row_bytes], at a multiple of 8 bytes, of any content
+   *  @param tails  [plan->tail_count], behind the records of earlier tasks
+   *  @returns 0, or -1 when the poll stopped it; records that it has added by then are no one's */
+  int (*evaluate)(worker *w, const kind_plan *plan, uint64_t task, unsigned char *row, records *tails);
   void (*close)(worker **w);
   /** The study's extra table; a count of 0 and no columns when there is none. EXIT_STOPPED when the poll stopped it. */
   int (*extra)(const study *s, ric_poll poll, extra_rows *extra, message *why);
@@ -45,5 +59,6 @@ typedef struct kind {
 const kind *kind_of(const study *s);
 
 extern const kind kind_orbits;
+extern const kind kind_trajectory;
 
 #endif

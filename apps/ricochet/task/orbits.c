@@ -1,5 +1,7 @@
 /* kind: orbits. The orbit of a pattern at every grid point. */
+#include <math.h>
 #include <stdbool.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -7,10 +9,17 @@
 #include "kind.h"
 #include "machine.h"
 #include "orbits_special.h"
+#include "trajectory.h"
 
 const char *const orbit_outcome_names[RIC_OUTCOME_COUNT] = {
 #define X(name, text) text,
     RIC_OUTCOME_LIST(X)
+#undef X
+};
+
+static const char *const verification_names[RIC_VERIFICATION_RESULTS] = {
+#define X(name, text) text,
+    RIC_VERIFICATION_LIST(X)
 #undef X
 };
 
@@ -21,6 +30,9 @@ struct worker {
   int pattern_varies; /* an element of at_start or at_half is swept */
   ric_orbit_solver *solver;
   ric_orbit orbit;
+  int verifies;
+  ric_verify_options verify;
+  ric_verification verification; /* of the present task's orbit */
 };
 
 /* The columns, in the order of the schema page; extents follow from the axes. */
@@ -40,19 +52,19 @@ static const column columns[] = {
      .source = "[JAP] (9)"},
     {.name = "q",
      .type = COLUMN_F64,
-     .axis = "particle",
+     .axes = {"particle"},
      .units = "1",
      .long_name = "position at t = 0+",
      .source = "[JAP] (7)-(8)"},
     {.name = "v",
      .type = COLUMN_F64,
-     .axis = "particle",
+     .axes = {"particle"},
      .units = "1",
      .long_name = "velocity at t = 0+",
      .source = "[JAP] (7)-(8)"},
     {.name = "impulse",
      .type = COLUMN_F64,
-     .axis = "impact",
+     .axes = {"impact"},
      .units = "1",
      .long_name = "velocity jump of each impact, at_start then at_half",
      .source = "[JAP] (3)"},
@@ -92,19 +104,35 @@ static const column columns[] = {
      .units = "1",
      .long_name = "oscillations of that mode per period, else 0",
      .source = "[JAP] (12)"},
+    {.name = "verified",
+     .type = COLUMN_ENUM,
+     .names = verification_names,
+     .name_count = RIC_VERIFICATION_RESULTS,
+     .units = "1",
+     .long_name = "what an event-driven run over one period found",
+     .source = "[JAP] (1)-(3)"},
+    {.name = "closure_error",
+     .type = COLUMN_F64,
+     .units = "1",
+     .long_name = "difference after one period, relative to the largest displacement and velocity",
+     .source = "[JAP] (1)-(3)"},
 };
+
+/* Columns of the verifier, at the end of the list. */
+enum { VERIFIER_COLUMNS = 2, COLUMNS = sizeof columns / sizeof *columns };
 
 static void lay_out(const study_values *v, table *t) {
   size_t n = (size_t)value_number(v, KEY_MODEL_PARTICLES, 0);
   size_t m = value_count(v, KEY_ORBIT_AT_START) + value_count(v, KEY_ORBIT_AT_HALF);
   *t = (table){.group = "orbits", .row_axis = "task"};
-  for (size_t i = 0; i < sizeof columns / sizeof *columns; i++) {
-    const char *axis = columns[i].axis;
+  const size_t count = value_flag(v, KEY_ORBIT_VERIFY) ? COLUMNS : COLUMNS - VERIFIER_COLUMNS;
+  for (size_t i = 0; i < count; i++) {
+    const char *axis = columns[i].axes[0];
     bool of_particles = axis && strcmp(axis, "particle") == 0;
     if (of_particles && !value_flag(v, KEY_ORBIT_STATES))
       continue;
     t->columns[t->column_count] = columns[i];
-    t->columns[t->column_count++].extent = of_particles ? n : axis ? m : 1;
+    t->columns[t->column_count++].extents[0] = of_particles ? n : m;
   }
   table_lay_out(t);
 }
@@ -113,29 +141,22 @@ static ric_orbit_method method_of(const study_values *v) {
   return strcmp(value_word(v, KEY_ORBIT_METHOD), "dense") == 0 ? RIC_METHOD_DENSE : RIC_METHOD_IMPULSE;
 }
 
-/* Refuses before anything large is allocated: four state arrays alone are 32 bytes per particle. */
-static int refuse_size(const study *s, double bytes, message *why) {
-  char place[256], needed[32], there[32];
-  if (bytes <= machine_memory())
-    return 0;
-  study_place(s, KEY_MODEL_PARTICLES, place, sizeof place);
-  return refuse(why, EXIT_USAGE,
-                "%s: an orbit of this size needs %s of memory, expected at most the %s of this machine", place,
-                machine_size(bytes, needed, sizeof needed), machine_size(machine_memory(), there, sizeof there));
-}
-
 static int plan_memory(const study *s, const study_values *v, kind_plan *plan, message *why) {
   chain_model model = {0};
   ric_pattern *pattern = NULL;
   ric_error error;
-  int code = refuse_size(s, 33 * value_number(v, KEY_MODEL_PARTICLES, 0) + (double)plan->rows.row_bytes, why);
+  /* Before anything large is allocated: four state arrays alone are 32 bytes per particle. */
+  int code = machine_refuse_size(s, "an orbit",
+                                 33 * value_number(v, KEY_MODEL_PARTICLES, 0) + (double)plan->rows.row_bytes, why);
   if (code)
     return code;
   if (chain_model_init(&model, v) != 0)
     code = refuse(why, EXIT_RUN, "%s: no memory for the floors", study_name(s));
   else if (chain_model_pattern(v, &pattern, &error) == RIC_OK) {
     plan->memory = ric_orbit_bytes(&model.chain, pattern, method_of(v)) + 2 * (double)plan->rows.row_bytes;
-    code = refuse_size(s, plan->memory, why);
+    if (value_flag(v, KEY_ORBIT_VERIFY))
+      plan->memory += TRAJECTORY_PARTICLE_BYTES * value_number(v, KEY_MODEL_PARTICLES, 0);
+    code = machine_refuse_size(s, "an orbit", plan->memory, why);
   }
   ric_pattern_destroy(&pattern);
   chain_model_clear(&model);
@@ -201,6 +222,9 @@ static int orbits_open(const study *s, ric_poll poll, worker **out, message *why
   options.method = method_of(w->values);
   options.poll = poll;
   w->pattern_varies = sweeps_pattern(s);
+  w->verifies = value_flag(w->values, KEY_ORBIT_VERIFY);
+  w->verify = ric_verify_options_default();
+  w->verify.motion.poll = poll;
   ric_status status = ric_orbit_solver_create(&options, &w->solver, &error);
   if (status == RIC_OK)
     status = ric_orbit_init(&w->orbit, w->model.chain.particles, m, &error);
@@ -221,10 +245,31 @@ static ric_status solve(worker *w, ric_error *error) {
                          &w->orbit, error);
 }
 
-static void fill_row(const ric_orbit *o, const table *t, unsigned char *row) {
+/* An event-driven run decides about an orbit that seems to be one. @returns RIC_OK or RIC_ESTOPPED */
+static ric_status verify(worker *w) {
+  ric_error error = {0};
+  ric_verification *found = &w->verification;
+  *found = (ric_verification){.result = RIC_NOT_RUN, .closure_error = NAN};
+  if (!w->verifies || (w->orbit.outcome != RIC_ADMISSIBLE && w->orbit.outcome != RIC_GRAZING))
+    return RIC_OK;
+  ric_status status = ric_orbit_verify(w->solver, &w->model.chain, w->pattern, &w->orbit, &w->verify, found, &error);
+  if (status == RIC_OK || status == RIC_ESTOPPED)
+    return status;
+  *found = (ric_verification){.result = RIC_RUN_FAILED, .closure_error = NAN};
+  snprintf(found->reason, sizeof found->reason, "%.*s", (int)sizeof found->reason - 1, error.message);
+  return RIC_OK;
+}
+
+/* What the verifier says has its place where the orbit itself leaves nothing to say. */
+static const char *reason_of(const worker *w) {
+  return w->orbit.reason[0] ? w->orbit.reason : w->verification.reason;
+}
+
+static void fill_row(const worker *w, const table *t, unsigned char *row) {
+  const ric_orbit *o = &w->orbit;
   memset(row, 0, t->row_bytes);
   row_put_word(row, table_column(t, "outcome"), (int)o->outcome);
-  row_put_text(row, table_column(t, "reason"), o->reason);
+  row_put_text(row, table_column(t, "reason"), reason_of(w));
   row_put_numbers(row, table_column(t, "q"), o->q);
   row_put_numbers(row, table_column(t, "v"), o->v);
   row_put_numbers(row, table_column(t, "impulse"), o->impulse);
@@ -232,14 +277,17 @@ static void fill_row(const ric_orbit *o, const table *t, unsigned char *row) {
   row_put_number(row, table_column(t, "residual"), o->residual);
   row_put_number(row, table_column(t, "clearance"), o->clearance);
   row_put_number(row, table_column(t, "clearance_time"), o->clearance_time);
-  row_put_integer(row, table_column(t, "clearance_particle"), (long)o->clearance_particle);
+  row_put_integer(row, table_column(t, "clearance_particle"), o->clearance_particle);
   row_put_number(row, table_column(t, "condition"), o->condition);
-  row_put_integer(row, table_column(t, "mode"), (long)o->mode);
-  row_put_integer(row, table_column(t, "harmonic"), (long)o->harmonic);
+  row_put_integer(row, table_column(t, "mode"), o->mode);
+  row_put_integer(row, table_column(t, "harmonic"), o->harmonic);
+  row_put_word(row, table_column(t, "verified"), (int)w->verification.result);
+  row_put_number(row, table_column(t, "closure_error"), w->verification.closure_error);
 }
 
-static int orbits_evaluate(worker *w, const table *layout, uint64_t task, unsigned char *row) {
+static int orbits_evaluate(worker *w, const kind_plan *plan, uint64_t task, unsigned char *row, records *tails) {
   ric_error error = {0};
+  (void)tails;
   study_values_at(w->values, task);
   chain_model_read(&w->model, w->values);
   ric_status status = solve(w, &error);
@@ -247,7 +295,9 @@ static int orbits_evaluate(worker *w, const table *layout, uint64_t task, unsign
     return -1;
   if (status != RIC_OK)
     ric_orbit_fail(&w->orbit, error.message);
-  fill_row(&w->orbit, layout, row);
+  if (verify(w) == RIC_ESTOPPED)
+    return -1;
+  fill_row(w, &plan->rows, row);
   return 0;
 }
 

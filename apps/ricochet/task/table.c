@@ -16,12 +16,30 @@ size_t column_value_bytes(const column *c) {
   return 0;
 }
 
+int column_axes(const column *c) {
+  int count = 0;
+  while (count < COLUMN_MOST_AXES && c->axes[count])
+    count++;
+  return count;
+}
+
+size_t column_values(const column *c) {
+  size_t values = 1;
+  for (int i = 0; i < column_axes(c); i++)
+    values *= c->extents[i];
+  return values;
+}
+
+size_t column_bytes(const column *c) {
+  return column_values(c) * column_value_bytes(c);
+}
+
 size_t table_lay_out(table *t) {
   size_t at = 0;
   for (size_t i = 0; i < t->column_count; i++) {
     column *c = &t->columns[i];
     c->offset = at;
-    at += (c->extent * column_value_bytes(c) + 7) / 8 * 8;
+    at += (column_bytes(c) + 7) / 8 * 8;
   }
   t->row_bytes = at;
   return at;
@@ -35,8 +53,12 @@ const column *table_column(const table *t, const char *name) {
 }
 
 void row_put_numbers(unsigned char *row, const column *c, const double *values) {
-  if (c && c->extent > 0)
-    memcpy(row + c->offset, values, c->extent * sizeof *values);
+  if (c && column_values(c) > 0)
+    memcpy(row + c->offset, values, column_bytes(c));
+}
+
+double *row_numbers(unsigned char *row, const column *c) {
+  return c ? (double *)(void *)(row + c->offset) : NULL;
 }
 
 void row_put_number(unsigned char *row, const column *c, double value) {
@@ -44,7 +66,7 @@ void row_put_number(unsigned char *row, const column *c, double value) {
     memcpy(row + c->offset, &value, sizeof value);
 }
 
-void row_put_integer(unsigned char *row, const column *c, long value) {
+void row_put_integer(unsigned char *row, const column *c, long long value) {
   int64_t wide = value;
   if (c)
     memcpy(row + c->offset, &wide, sizeof wide);

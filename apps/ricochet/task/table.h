@@ -1,7 +1,8 @@
 /* The layout of result rows: a table is a list of columns, a row of it one block of bytes.
  *
- * A kind of study describes its results as a table; the evaluation of a task fills one row. Checkpoint, result writer,
- * `show` and the schema page all read this description, so a column is added in one place. */
+ * A kind of study describes its results as tables; the evaluation of a task fills one row of the first, and adds
+ * records to the others: rows of tables whose number differs from task to task, such as impacts. Checkpoint, result
+ * writer, `show` and the schema page all read this description, so a column is added in one place. */
 #ifndef RICOCHET_APP_TABLE_H
 #define RICOCHET_APP_TABLE_H
 
@@ -14,13 +15,15 @@ typedef enum column_type {
   COLUMN_TEXT  /* fixed length, zero padded */
 } column_type;
 
+enum { COLUMN_MOST_AXES = 2 /* besides that of the rows */ };
+
 typedef struct column {
   const char *name; /* data set in the table's group */
   column_type type;
-  const char *axis;         /* name of the second axis' dimension scale in the root group; NULL: one value per row */
-  size_t extent;            /* values along that axis, may be 0; 1 without an axis */
-  size_t text_bytes;        /* bytes of a COLUMN_TEXT value */
-  const char *const *names; /* words of a COLUMN_ENUM */
+  const char *axes[COLUMN_MOST_AXES]; /* names of the further axes' dimension scales in the root group; NULL: none */
+  size_t extents[COLUMN_MOST_AXES];   /* values along each of them, may be 0; without meaning where there is no axis */
+  size_t text_bytes;                  /* bytes of a COLUMN_TEXT value */
+  const char *const *names;           /* words of a COLUMN_ENUM */
   size_t name_count;
   const char *units, *long_name, *source;
   size_t offset; /* of the first value in a row; set by table_lay_out, a multiple of 8 */
@@ -39,6 +42,15 @@ typedef struct table {
 /** Bytes of one value of a column: 8, 1, or text_bytes. */
 size_t column_value_bytes(const column *c);
 
+/** Number of further axes, 0 to COLUMN_MOST_AXES. */
+int column_axes(const column *c);
+
+/** Values per row: the product of the extents, 1 without a further axis. */
+size_t column_values(const column *c);
+
+/** Bytes of a row's values. */
+size_t column_bytes(const column *c);
+
 /** Sets the offsets and row_bytes; returns row_bytes. */
 size_t table_lay_out(table *t);
 
@@ -48,8 +60,12 @@ const column *table_column(const table *t, const char *name);
 /* Writing into a row. A NULL column (a table without it) is skipped, so that optional columns need no test. */
 void row_put_numbers(unsigned char *row, const column *c, const double *values);
 void row_put_number(unsigned char *row, const column *c, double value);
-void row_put_integer(unsigned char *row, const column *c, long value);
+void row_put_integer(unsigned char *row, const column *c, long long value);
 void row_put_word(unsigned char *row, const column *c, int value);
 void row_put_text(unsigned char *row, const column *c, const char *text);
+
+/** Where the numbers of a column stand in a row, to be filled in place; NULL for a NULL column. The row begins at a
+ *  multiple of 8 bytes. */
+double *row_numbers(unsigned char *row, const column *c);
 
 #endif

@@ -1,0 +1,31 @@
+/* The lattice, its obstacles and the state at t = 0 that a study's values describe. */
+#ifndef RICOCHET_APP_LATTICE_MODEL_H
+#define RICOCHET_APP_LATTICE_MODEL_H
+
+#include <ricochet/ricochet.h>
+
+#include "../study/study.h"
+
+/** A lattice with the storage of its lists. */
+typedef struct lattice_model {
+  ric_lattice lattice;
+  double *masses;                /* [particles] when the study lists them, else NULL */
+  double *force_cos, *force_sin; /* [particles] */
+  ric_obstacle *obstacles;       /* [obstacle_count] floors by particle, then walls by particle; room for both of all */
+  size_t obstacle_count;
+} lattice_model;
+
+/** Bytes of a lattice with its lists, per particle. */
+enum { LATTICE_MODEL_BYTES = 3 * sizeof(double) + 2 * sizeof(ric_obstacle) };
+
+/** Allocates for the number of particles of the values. @returns 0, or -1 when out of memory. */
+int lattice_model_init(lattice_model *m, const study_values *v);
+void lattice_model_clear(lattice_model *m);
+
+/** Reads the lattice of the present task. */
+void lattice_model_read(lattice_model *m, const study_values *v);
+
+/** Element of a particle: that of the list, or the one value for all. */
+double lattice_model_value(const study_values *v, study_key key, size_t particle);
+
+#endif
