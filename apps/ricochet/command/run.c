@@ -181,10 +181,12 @@ static size_t list_tables(run *r, result_table *tables, tail_source *tails) {
 }
 
 static int write_result(run *r, message *why) {
+  char libraries[256];
+  snprintf(libraries, sizeof libraries, "%s, %s", ric_libraries(), build_libraries());
   result_header header = {.study = r->study,
                           .command = r->command,
                           .git_sha = build_git_sha(),
-                          .libraries = build_libraries(),
+                          .libraries = libraries,
                           .compiler = build_compiler(),
                           .version = build_version(),
                           .compute_seconds = r->computed.seconds,

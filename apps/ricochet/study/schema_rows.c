@@ -299,7 +299,7 @@ static const schema_entry rows[KEY_COUNT] = {
                            .required = true,
                            .low = 0,
                            .low_open = true,
-                           .high = INFINITY,
+                           .high = 1e9, /* beyond, a double resolves less than 1e-7 of time */
                            .kinds = "trajectory",
                            .sweep = true,
                            .doc = "The motion is followed from t = 0 to this time."},
