@@ -177,6 +177,43 @@ static void moving_a_user_system_allocates_nothing(void **state) {
   ric_system_destroy(&system);
 }
 
+/* The second run of a trajectory meets nothing that the first has not met. */
+static size_t allocations_of_a_second_run(const ric_system *system, const double *q, const double *u, double end) {
+  ric_trajectory *trajectory = NULL;
+  ric_run run;
+  assert_int_equal(ric_trajectory_create(system, NULL, &trajectory, NULL), RIC_OK);
+  assert_int_equal(ric_trajectory_start(trajectory, 0, q, u, NULL), RIC_OK);
+  assert_int_equal(ric_trajectory_run(trajectory, end, NULL, &run, NULL), RIC_OK);
+  size_t before = allocations;
+  assert_int_equal(ric_trajectory_start(trajectory, 0, q, u, NULL), RIC_OK);
+  assert_int_equal(ric_trajectory_run(trajectory, end, NULL, &run, NULL), RIC_OK);
+  size_t during = allocations - before;
+  assert_true(run.events[RIC_EVENT_TRANSVERSAL] > 3);
+  ric_trajectory_destroy(&trajectory);
+  return during;
+}
+
+/* Impacts, chatter, rest, Hertz contacts: all in one chain. */
+static void following_a_motion_again_allocates_nothing(void **state) {
+  (void)state;
+  enum { N = 8 };
+  ric_obstacle obstacles[N];
+  double q[N], u[N];
+  ric_lattice chain = ric_lattice_default(N, RIC_ENDS_FIXED);
+  chain.link = (ric_spring){.linear = 0.2, .cubic = 0.1, .damping = 0.01};
+  for (size_t i = 0; i < N; i++) {
+    obstacles[i] = ric_obstacle_floor(i, i < 4 ? 0.1 : -0.3);
+    obstacles[i].restitution = 0.5;
+    obstacles[i].stiffness = i == 6 ? 1000 : INFINITY;
+    q[i] = 0.3 + 0.1 * (double)i;
+    u[i] = i % 2 ? 0.5 : -0.5;
+  }
+  ric_system *system = NULL;
+  assert_int_equal(ric_system_create_lattice(&chain, obstacles, N, &system, NULL), RIC_OK);
+  assert_int_equal(allocations_of_a_second_run(system, q, u, 30), 0);
+  ric_system_destroy(&system);
+}
+
 /* The estimate leaves out the block of the flow, the descriptions of the plans, and buffers that FFTW takes for awkward
  * numbers of particles, up to two numbers per site. It serves to refuse what cannot fit. */
 static void check_estimate(scenario s, ric_orbit_method method) {
@@ -210,6 +247,7 @@ int main(void) {
       cmocka_unit_test(solving_again_with_an_awkward_number_of_particles_allocates_nothing),
       cmocka_unit_test(solving_again_on_a_unit_cell_allocates_nothing),
       cmocka_unit_test(moving_a_user_system_allocates_nothing),
+      cmocka_unit_test(following_a_motion_again_allocates_nothing),
       cmocka_unit_test(memory_is_what_was_estimated),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

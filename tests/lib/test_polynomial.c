@@ -219,6 +219,49 @@ static void nearly_constant_polynomials_are_no_trouble(void **state) {
   }
 }
 
+/* The first sample lower than both its neighbours lies at the first minimum, unless one too shallow for the samples or
+ * above the cutoff comes before it. */
+static void check_first_minimum(random_source *source, const double *c) {
+  double cutoff = random_uniform(source, -1, 1), at = -1, value, slope, sampled = -1;
+  for (int s = 1; s < SAMPLES && sampled < 0; s++) {
+    double x = (double)s / SAMPLES, here = ric_poly_value(c, DEGREE, x, NULL);
+    if (here < ric_poly_value(c, DEGREE, x - 1.0 / SAMPLES, NULL) - rounding_of(c, DEGREE) &&
+        here < ric_poly_value(c, DEGREE, x + 1.0 / SAMPLES, NULL) - rounding_of(c, DEGREE) && here < cutoff - 1e-3)
+      sampled = x;
+  }
+  int found = ric_poly_first_minimum(c, DEGREE, cutoff, &at, &value);
+  assert_true(found || sampled < 0);
+  if (!found)
+    return;
+  assert_true(at >= 0 && at <= 1 && value <= cutoff);
+  assert_true(sampled < 0 || at <= sampled + 1.0 / SAMPLES);
+  assert_close(ric_poly_value(c, DEGREE, at, &slope), value, rounding_of(c, DEGREE));
+  assert_close(slope, 0, 1e3 * DEGREE * rounding_of(c, DEGREE));
+}
+
+static void first_minimum_is_flat_low_and_not_after_a_sampled_one(void **state) {
+  (void)state;
+  for_random_polynomials(check_first_minimum);
+}
+
+static void first_minimum_is_the_first_of_two_wells(void **state) {
+  (void)state;
+  /* ((x - a)(x - b))^2 has its wells at a and b, also where halving meets them exactly */
+  const double wells[][2] = {{0.25, 0.75}, {0.5, 0.9}, {0.125, 0.5}, {0.3, 0.31}};
+  for (int k = 0; k < 4; k++) {
+    double a = wells[k][0], b = wells[k][1], p = a + b, q = a * b, at, value;
+    const double c[5] = {q * q, -2 * p * q, p * p + 2 * q, -2 * p, 1};
+    assert_int_equal(ric_poly_first_minimum(c, 4, 1e-12, &at, &value), 1);
+    assert_close(at, a, 1e-7);
+    assert_close(value, 0, 1e-15);
+    assert_int_equal(ric_poly_first_minimum(c, 4, -1e-6, &at, &value), 0);
+  }
+  const double rising[] = {0, 1, 1}, falling[] = {1, -1};
+  double at, value;
+  assert_int_equal(ric_poly_first_minimum(rising, 2, 1, &at, &value), 0);
+  assert_int_equal(ric_poly_first_minimum(falling, 1, 1, &at, &value), 0);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(value_and_slope_are_sums_of_powers),
@@ -232,6 +275,8 @@ int main(void) {
       cmocka_unit_test(deeper_of_two_wells_is_found),
       cmocka_unit_test(minima_of_chebyshev_polynomials_are_minus_one),
       cmocka_unit_test(nearly_constant_polynomials_are_no_trouble),
+      cmocka_unit_test(first_minimum_is_flat_low_and_not_after_a_sampled_one),
+      cmocka_unit_test(first_minimum_is_the_first_of_two_wells),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

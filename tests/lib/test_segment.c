@@ -41,6 +41,19 @@ static void state_is_the_polynomial_and_its_time_derivative(void **state) {
   }
 }
 
+/* Speeds that are no derivatives have polynomials of their own, after those of the coordinates. */
+static void speeds_of_their_own_are_read_from_their_polynomials(void **state) {
+  (void)state;
+  random_source source = {.state = 14};
+  double coef[(DEGREE + 1) * STRIDE], q[COORDINATES], all[COORDINATES], u[1];
+  ric_segment s = random_segment(&source, coef);
+  ric_segment_state(&s, 0.7, all, NULL);
+  s.coordinates = COORDINATES - 1;
+  s.speeds = 1;
+  ric_segment_state(&s, 0.7, q, u);
+  assert_true(q[0] == all[0] && q[1] == all[1] && u[0] == all[2]);
+}
+
 static void gap_is_the_coordinate_above_its_floor(void **state) {
   (void)state;
   random_source source = {.state = 12};
@@ -53,23 +66,27 @@ static void gap_is_the_coordinate_above_its_floor(void **state) {
   }
 }
 
-static void lower_bounds_are_those_of_the_polynomials(void **state) {
+static void bounds_are_those_of_the_polynomials(void **state) {
   (void)state;
   random_source source = {.state = 13};
-  double coef[(DEGREE + 1) * STRIDE], c[DEGREE + 1], lower[COORDINATES];
+  double coef[(DEGREE + 1) * STRIDE], c[DEGREE + 1], lower[COORDINATES], upper[COORDINATES];
   ric_segment s = random_segment(&source, coef);
-  ric_segment_bounds(&s, lower, NULL);
+  ric_segment_bounds(&s, lower, upper);
   for (size_t i = 0; i < COORDINATES; i++) {
     ric_segment_gap(&s, i, 0, c);
     assert_close(lower[i], ric_poly_lower_bound(c, DEGREE), 1e-15);
+    for (int j = 0; j <= DEGREE; j++)
+      c[j] = -c[j];
+    assert_close(upper[i], -ric_poly_lower_bound(c, DEGREE), 1e-15);
   }
 }
 
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(state_is_the_polynomial_and_its_time_derivative),
+      cmocka_unit_test(speeds_of_their_own_are_read_from_their_polynomials),
       cmocka_unit_test(gap_is_the_coordinate_above_its_floor),
-      cmocka_unit_test(lower_bounds_are_those_of_the_polynomials),
+      cmocka_unit_test(bounds_are_those_of_the_polynomials),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
