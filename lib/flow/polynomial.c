@@ -93,13 +93,18 @@ static int sign_changes(const double *b, int degree, int order, int *first) {
   return changes;
 }
 
+/* Whether Newton's method has arrived: the next step would be below rounding by the rate at which steps shrink, or they
+ * have stopped shrinking. `last` is the size of the step before, 0 when that was none of Newton's. */
+static int has_settled(double change, double last) {
+  return change <= 1e-16 || (last > 0 && (change * change <= 1e-17 * last || (change <= 1e-9 && change >= 0.9 * last)));
+}
+
 /* The only root of the polynomial (order 0, falling) or of its derivative (order 1, rising) in [low, high]: Newton's
  * method inside a shrinking bracket. */
 static double bracketed_root(const double *c, int degree, int order, double low, double high) {
-  double d[SIZE];
+  double d[SIZE], x = (low + high) / 2, last = 0;
   for (int j = 0; j <= degree - order; j++)
     d[j] = order ? (j + 1) * c[j + 1] : -c[j];
-  double x = (low + high) / 2;
   for (int i = 0; i < 2 * DEPTH; i++) {
     double slope, value = ric_poly_value(d, degree - order, x, &slope);
     if (value > 0)
@@ -107,10 +112,13 @@ static double bracketed_root(const double *c, int degree, int order, double low,
     else
       low = x;
     double next = x - value / slope;
-    if (!(next > low && next < high))
+    int inside = next > low && next < high;
+    if (!inside)
       next = (low + high) / 2;
-    if (fabs(next - x) <= 1e-16)
+    double change = fabs(next - x);
+    if (has_settled(change, inside ? last : 0))
       return next;
+    last = inside ? change : 0;
     x = next;
   }
   return x;
@@ -211,10 +219,9 @@ int ric_poly_first_minimum(const double *c, int degree, double cutoff, double *a
   return 0;
 }
 
-int ric_poly_first_root(const double *c, int degree, double *at) {
-  if (lies_above(c, degree, 0))
-    return 0;
-  piece stack[DEPTH + 1];
+/* First piece that holds a root: its first point is not positive, or it has exactly one root. Returns its number of
+ * sign changes, -1 when there is none. */
+static int piece_of_first_root(const double *c, int degree, piece *stack) {
   int depth = 1;
   stack[0].start = 0, stack[0].width = 1;
   ric_poly_bernstein(c, degree, stack[0].b);
@@ -223,17 +230,34 @@ int ric_poly_first_root(const double *c, int degree, double *at) {
     int first, changes = sign_changes(p->b, degree, 0, &first);
     if (p->b[0] > 0 && changes == 0 && p->b[degree] > 0)
       continue;
-    if (p->b[0] > 0 && changes == 0) /* positive up to its end, where it is zero */
-      *at = p->start + p->width;
-    else if (p->b[0] > 0 && changes == 1)
-      *at = bracketed_root(c, degree, 0, p->start, p->start + p->width);
-    else if (p->b[0] > 0 && depth < DEPTH) {
+    if (p->b[0] > 0 && changes > 1 && depth < DEPTH) {
       halve(p, p + 1, degree); /* the first half lands on top and is looked at first */
       depth += 2;
       continue;
-    } else
-      *at = p->start;
-    return 1;
+    }
+    stack[0] = *p;
+    return changes;
   }
-  return 0;
+  return -1;
+}
+
+int ric_poly_first_root(const double *c, int degree, double *at) {
+  piece stack[DEPTH + 1], *p = stack;
+  if (lies_above(c, degree, 0))
+    return 0;
+  int changes = piece_of_first_root(c, degree, stack);
+  if (changes < 0)
+    return 0;
+  if (p->b[0] > 0 && changes == 0) /* positive up to its end, where it is zero */
+    *at = p->start + p->width;
+  else if (p->b[0] > 0 && changes == 1)
+    *at = bracketed_root(c, degree, 0, p->start, p->start + p->width);
+  else
+    *at = p->start;
+  return 1;
+}
+
+int ric_poly_is_positive(const double *c, int degree) {
+  piece stack[DEPTH + 1];
+  return lies_above(c, degree, 0) || piece_of_first_root(c, degree, stack) < 0;
 }

@@ -54,6 +54,18 @@ static ric_status found_root(scan *s, size_t obstacle, double x) {
   return add_hit(&s->l->roots, (hit){.obstacle = obstacle, .x = x, .depth = NAN}, s->error);
 }
 
+/* Cuts a part off behind the first root so far: what comes later is of no interest, and on the short interval that is
+ * left the cheap bounds exclude nearly every other contact. @returns false when nothing is left. */
+static bool shorten(const scan *s, gap_part *part) {
+  double y = (s->l->first + s->together - part->from) / (part->to - part->from), power = 1;
+  if (y >= 1)
+    return true;
+  for (int j = 1; j <= part->degree; j++)
+    part->c[j] *= power *= y;
+  part->to = part->from + y * (part->to - part->from);
+  return y > 0;
+}
+
 /* First root of a contact's function on a part that starts at the departure, or not. */
 static int first_root(const scan *s, const double *c, int degree, departure from, double *y) {
   double shifted[RIC_POLY_DEGREE + 1];
@@ -69,11 +81,11 @@ static int first_root(const scan *s, const double *c, int degree, departure from
 
 /* Whether the gap comes down to grazing_tol at all: for most contacts that bounds did not exclude, it does not. */
 static bool comes_near(const scan *s, const gap_part *part) {
-  double lowered[RIC_POLY_DEGREE + 1], y;
+  double lowered[RIC_POLY_DEGREE + 1];
   for (int j = 0; j <= part->degree; j++)
     lowered[j] = part->c[j];
   lowered[0] -= s->l->grazing_tol;
-  return ric_poly_first_root(lowered, part->degree, &y);
+  return !ric_poly_is_positive(lowered, part->degree);
 }
 
 /* Root and near misses of an open rigid contact on one part; `found` ends the search along the piece. */
@@ -95,8 +107,11 @@ static ric_status scan_gap(scan *s, const ric_segment *piece, size_t obstacle, d
   gap_part part;
   bool resolved;
   const char *trouble = gap_read(&s->l->reader, piece, obstacle, from, to, &part, &resolved);
+  *found = false;
   if (trouble)
     return ric_fail(s->error, RIC_ECALLBACK, "at t = %g, obstacle %zu: %s", piece->start, obstacle, trouble);
+  if (!shorten(s, &part))
+    return RIC_OK;
   if (!resolved && halvings > 0) {
     double middle = (from + to) / 2;
     RIC_TRY(scan_gap(s, piece, obstacle, from, middle, halvings - 1, found));
@@ -105,25 +120,31 @@ static ric_status scan_gap(scan *s, const ric_segment *piece, size_t obstacle, d
   return look_at_gap(s, obstacle, &part, from == 0 ? (departure)s->l->departure[obstacle] : DEPARTED, found);
 }
 
+/* A function on the whole step. */
+static ric_status scan_whole(scan *s, size_t obstacle, gap_part *part, departure from) {
+  double y;
+  if (!shorten(s, part) || !first_root(s, part->c, part->degree, from, &y))
+    return RIC_OK;
+  return found_root(s, obstacle, y * part->to);
+}
+
 /* A compliant obstacle: its gap while open, minus its gap while pressed. */
 static ric_status scan_compliant(scan *s, const ric_segment *piece, size_t obstacle, contact_state state) {
   gap_part part;
   bool resolved;
-  double x;
   gap_read(&s->l->reader, piece, obstacle, 0, 1, &part, &resolved); /* at a coordinate: cannot fail */
   for (int j = 0; state == CONTACT_PRESSED && j <= part.degree; j++)
     part.c[j] = -part.c[j];
-  return first_root(s, part.c, part.degree, (departure)s->l->departure[obstacle], &x) ? found_root(s, obstacle, x)
-                                                                                      : RIC_OK;
+  return scan_whole(s, obstacle, &part, (departure)s->l->departure[obstacle]);
 }
 
 static ric_status scan_held(scan *s, size_t obstacle) {
-  double c[RIC_POLY_DEGREE + 1], x;
-  int degree = s->flow->method->reaction(s->flow, obstacle, c);
-  if (degree < 0)
+  gap_part part = {.from = 0, .to = 1};
+  part.degree = s->flow->method->reaction(s->flow, obstacle, part.c);
+  if (part.degree < 0)
     return ric_fail(s->error, RIC_ECALLBACK, "at t = %g, obstacle %zu: its force could not be evaluated", s->flow->time,
                     obstacle);
-  return ric_poly_first_root(c, degree, &x) ? found_root(s, obstacle, x) : RIC_OK;
+  return scan_whole(s, obstacle, &part, DEPARTED);
 }
 
 static ric_status scan_contact(scan *s, const ric_segment *piece, size_t obstacle) {

@@ -22,6 +22,7 @@ static void expect_root(const double *c, int degree, double root) {
   for (int j = 0; j <= degree; j++)
     sum += fabs(c[j]);
   assert_int_equal(ric_poly_first_root(c, degree, &at), 1);
+  assert_false(ric_poly_is_positive(c, degree));
   ric_poly_value(c, degree, root, &slope);
   assert_close(at, root, 1e-15 + 1e-16 * 8 * (degree + 1) * sum / fabs(slope));
 }
@@ -29,6 +30,7 @@ static void expect_root(const double *c, int degree, double root) {
 static void expect_none(const double *c, int degree) {
   double at = -3;
   assert_int_equal(ric_poly_first_root(c, degree, &at), 0);
+  assert_true(ric_poly_is_positive(c, degree));
   assert_close(at, -3, 0);
 }
 

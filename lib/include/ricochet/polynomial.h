@@ -41,4 +41,7 @@ RIC_API void ric_poly_reflect(const double *c, int degree, double *r);
  *  @returns 1 and sets `at`, or 0 when it is positive on the whole interval. */
 RIC_API int ric_poly_first_root(const double *c, int degree, double *at);
 
+/** Whether the polynomial is positive on the whole of [0, 1]: ric_poly_first_root without the root. */
+RIC_API int ric_poly_is_positive(const double *c, int degree);
+
 #endif
