@@ -1,6 +1,5 @@
 #include "lattice_block.h"
 
-#include <math.h>
 #include <string.h>
 
 #include "vectorised.h"
@@ -110,26 +109,13 @@ RIC_INLINE void general_level(lattice_block *b, int j, size_t low, size_t high, 
 }
 
 /* Adds the j-th coefficient of the pressed contacts' forces to c_{j+2}. */
-RIC_INLINE void add_presses(lattice_block *b, int j, double scale) {
-  block_presses *s = &b->presses;
-  size_t stride = s->capacity;
+static void add_presses(lattice_block *b, int j, double scale) {
   const double *c = b->c + (size_t)j * b->stride;
-  double *next = b->c + (size_t)(j + 2) * b->stride, *u = s->u + (size_t)j * stride, *p = s->p + (size_t)j * stride;
-  for (size_t k = 0; k < s->count; k++) {
-    if (j == 0)
-      p[k] = u[k] * sqrt(u[k]);
-    else {
-      u[k] = -s->sign[k] * c[s->column[k]];
-      p[k] = 0;
-    }
-  }
-  for (int i = 1; i <= j; i++)
-    for (size_t k = 0; k < s->count; k++)
-      p[k] += (1.5 * i - (j - i)) * s->u[(size_t)i * stride + k] * s->p[(size_t)(j - i) * stride + k];
-  for (size_t k = 0; k < s->count; k++) {
-    if (j > 0)
-      p[k] /= j * s->u[k];
-    next[s->column[k]] += scale * s->strength[k] * p[k];
+  double *next = b->c + (size_t)(j + 2) * b->stride;
+  for (size_t k = 0; k < b->presses.count; k++) {
+    block_press *p = &b->presses.press[k];
+    double u = j == 0 ? p->start : -p->side * c[p->column];
+    next[p->column] += scale * p->strength * hertz_series_next(&p->series, j, u);
   }
 }
 

@@ -5,10 +5,8 @@
  *   (j + 1) (j + 2) c_{j+2} = h^2 f_j / m,
  *
  * f_j the j-th coefficient of its force: a stencil for linear springs, one on c_{j+1} for dampers, truncated Cauchy
- * products for squares and cubes, the series of cosine and sine for the forcing. A Hertz contact with the approach
- * u > 0 has the force k p, p = u^{3/2}, and u p' = (3/2) u' p gives
- *
- *   p_j = (1 / (j u_0)) sum_{i=1..j} (3 i / 2 - (j - i)) u_i p_{j-i}.
+ * products for squares and cubes, the series of cosine and sine for the forcing, and that of a Hertz contact
+ * (hertz_series.h).
  *
  * A block knows nothing of lattices: its columns carry rows of constants. Columns of zeros are walls, an inverse mass
  * of zero holds a column where it is. */
@@ -17,6 +15,8 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+
+#include "hertz_series.h"
 
 /** Constants of a column. Link constants belong to the link on its left. */
 typedef enum block_row {
@@ -39,13 +39,18 @@ typedef enum block_row {
 /** What a block has beyond linear springs. */
 enum { BLOCK_DAMPED = 1, BLOCK_LINK_DAMPED = 2, BLOCK_SITE_NONLINEAR = 4, BLOCK_LINK_NONLINEAR = 8, BLOCK_FORCED = 16 };
 
-/** Pressed Hertz contacts of a block, series side by side. */
+/** A pressed Hertz contact of a column. */
+typedef struct block_press {
+  size_t column;
+  double side, position; /* of the obstacle */
+  double strength;       /* side times stiffness over the mass */
+  double start;          /* penetration at the start of the step */
+  hertz_series series;
+} block_press;
+
 typedef struct block_presses {
   size_t count, capacity;
-  size_t *column;   /* [capacity] */
-  double *sign;     /* [capacity] side of the obstacle */
-  double *strength; /* [capacity] side times stiffness over the mass */
-  double *u, *p;    /* [order + 1][capacity] */
+  block_press *press; /* [capacity] */
 } block_presses;
 
 typedef struct lattice_block {
@@ -77,7 +82,7 @@ static inline void lattice_block_close_ring(lattice_block *block, int level) {
   }
 }
 
-/** Fills c_2 ... c_order from c_0 and c_1 (velocity times h); ghosts and the presses' u_0 are given.
+/** Fills c_2 ... c_order from c_0 and c_1 (velocity times h); ghosts and the starts of the presses are given.
  *  @param cosine, sine  [order + 1] series of the forcing's cosine and sine */
 void lattice_block_raise(lattice_block *block, double h, const double *cosine, const double *sine);
 

@@ -2,6 +2,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "hertz_series.h"
 #include "lattice_flow_parts.h"
 #include "model/lattice_force.h"
 
@@ -42,32 +43,17 @@ void lattice_flow_list_contacts(lattice_flow *f) {
   pressed_changed |= f->pressed_count != pressed_before;
   f->contacts_changed |= held_changed || pressed_changed;
   if (pressed_changed) /* steps near the branch points of Hertz's law say nothing about those elsewhere */
-    f->trial = lattice_flow_first_trial(f);
+    f->stepper.trial = taylor_stepper_natural(&f->stepper);
 }
 
-/* Longest step from the point of contact on which leaving the force out changes the gap rate by less than the
- * tolerance: k (w h)^{3/2} h / m <= tolerance w with w = |u'| + |u''| h, or what the time can resolve. */
-static double negligible_step(const lattice_flow *f, const lattice_press *p, double rate, double *w) {
-  double mass = ric_lattice_mass(f->lattice, p->coordinate), t = f->base.time;
-  double bend = fabs(lattice_force(f->lattice, p->coordinate, t, f->base.q, f->base.u)) / mass;
-  double natural = lattice_flow_first_trial(f), h = 1e-3 * natural;
-  for (int i = 0; i < 12; i++) { /* converges like 0.2^i */
-    *w = fabs(rate) + bend * h;
-    h = fmin(pow(f->base.options.tolerance * mass / (p->stiffness * sqrt(*w)), 0.4), 0.01 * natural);
-  }
-  return fmax(h, 4e-12 * (1 + fabs(t)));
-}
-
-/* Whether the force of a contact has a series that is worth anything; else lowers the limit of the step. */
 static bool acts(const lattice_flow *f, const lattice_press *p, int direction, double *limit) {
-  double u = p->side * (p->position - f->base.q[p->coordinate]), w;
-  double rate = -p->side * direction * f->base.u[p->coordinate];
-  double h = negligible_step(f, p, rate, &w);
-  if (u > 0 && u >= 0.5 * h * w)
-    return true;
-  if (u > 0 || rate >= 0)
-    *limit = fmin(*limit, rate > 0 && u < 0 ? h - u / rate : h);
-  return false;
+  double mass = ric_lattice_mass(f->lattice, p->coordinate), t = f->base.time;
+  double force = lattice_force(f->lattice, p->coordinate, t, f->base.q, f->base.u);
+  hertz_contact c = {.penetration = p->side * (p->position - f->base.q[p->coordinate]),
+                     .rate = -p->side * direction * f->base.u[p->coordinate],
+                     .bend = fabs(force) / mass,
+                     .strength = p->stiffness / mass};
+  return hertz_acts(&c, f->base.options.tolerance, taylor_stepper_natural(&f->stepper), taylor_step_least(t), limit);
 }
 
 ric_status lattice_flow_take_contacts(lattice_flow *f, int direction, double *limit, ric_error *error) {

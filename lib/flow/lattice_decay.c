@@ -2,46 +2,14 @@
 #include <math.h>
 
 #include "lattice_series_parts.h"
-#include "vectorised.h"
 
-/* Largest magnitude of a row; NaN when one is not finite. */
-RIC_VECTORISED static double largest(const double *c, size_t count) {
-  enum { LANES = 8 };
-  double most[LANES] = {0}, finite[LANES] = {0}, found = 0, sum = 0;
-  size_t i = 0;
-  for (; i + LANES <= count; i += LANES)
-    for (size_t lane = 0; lane < LANES; lane++) {
-      double a = fabs(c[i + lane]);
-      most[lane] = a > most[lane] ? a : most[lane];
-      finite[lane] += 0 * a;
-    }
-  for (; i < count; i++) {
-    found = fabs(c[i]) > found ? fabs(c[i]) : found;
-    sum += 0 * c[i];
-  }
-  for (size_t lane = 0; lane < LANES; lane++) {
-    found = most[lane] > found ? most[lane] : found;
-    sum += finite[lane];
-  }
-  return found + sum;
-}
-
-lattice_decay lattice_series_decay(const lattice_series *s) {
+taylor_decay lattice_series_decay(const lattice_series *s) {
   const lattice_block *b = &s->block;
-  const block_presses *p = &b->presses;
-  int order = b->order;
-  const double *c = s->segment.coef;
-  lattice_decay d = {.nearest_zero = INFINITY};
-  for (int k = 0; k < 2; k++)
-    d.tail[k] = largest(c + (size_t)(order - 1 + k) * b->stride, b->count);
-  for (int j = 1; j <= 3; j++)
-    d.change = fmax(d.change, largest(c + (size_t)j * b->stride, b->count));
-  if (!isfinite(d.tail[0] + d.tail[1]))
-    d.change = NAN;
-  for (size_t k = 0; k < p->count; k++) {
-    double u0 = p->u[k], u1 = fabs(p->u[p->capacity + k]), u2 = fabs(p->u[2 * p->capacity + k]);
-    if (p->column[k] >= b->ghosts && p->column[k] - b->ghosts < b->count) /* others are their own piece's */
-      d.nearest_zero = fmin(d.nearest_zero, u0 / (u1 + sqrt(u0 * u2)));   /* u_1 x + u_2 x^2 is below u_0 there */
+  taylor_decay d = taylor_decay_of(s->segment.coef, b->stride, b->count, b->order);
+  for (size_t k = 0; k < b->presses.count; k++) {
+    const block_press *p = &b->presses.press[k];
+    if (p->column >= b->ghosts && p->column - b->ghosts < b->count) /* others are their own piece's */
+      d.nearest_zero = fmin(d.nearest_zero, hertz_series_nearest_zero(&p->series));
   }
   return d;
 }

@@ -20,15 +20,8 @@ static ric_status start(ric_flow *flow, ric_error *error) {
   return RIC_OK;
 }
 
-static ric_status step(ric_flow *flow, double stop, ric_error *error) {
-  lattice_flow *f = self(flow);
-  f->made = SIZE_MAX;
-  f->ended = 0;
-  flow->counts.force_evaluations++;
-  return lattice_flow_choose_step(f, stop, error);
-}
-
-ric_segment lattice_flow_make(lattice_flow *f, size_t index, double length) {
+/* Puts a piece of a step of the given length into the workspace, with its end state where that comes cheap. */
+static ric_segment make(lattice_flow *f, size_t index, double length) {
   size_t first = index * f->block, rest = f->base.system->coordinates - first;
   ric_segment s = lattice_series_segment(f->series, f->base.q, f->base.u, f->base.time, length, first,
                                          rest < f->block ? rest : f->block);
@@ -42,7 +35,46 @@ ric_segment lattice_flow_make(lattice_flow *f, size_t index, double length) {
 
 static ric_segment piece(ric_flow *flow, size_t index) {
   lattice_flow *f = self(flow);
-  return f->made == index ? lattice_series_last(f->series) : lattice_flow_make(f, index, flow->length);
+  return f->made == index ? lattice_series_last(f->series) : make(f, index, flow->length);
+}
+
+/* A linear motion grows by less than exp(2.2) per coefficient in a step of the bound: the start says it all. */
+static taylor_decay look_at_start(const lattice_flow *f, double length) {
+  double size = taylor_largest(f->base.q, f->lattice->particles);
+  size += fabs(length) * taylor_largest(f->base.u, f->lattice->particles);
+  return (taylor_decay){.change = size < 1e290 ? size : NAN, .nearest_zero = INFINITY};
+}
+
+/* Series of all pieces. Steps of a linear lattice within the bound leave them until they are asked for. */
+static taylor_decay expand(ric_flow *flow, double length) {
+  lattice_flow *f = self(flow);
+  f->made = SIZE_MAX;
+  f->ended = 0;
+  if (f->stepper.by_bound && f->acting_count == 0 && fabs(length) <= f->stepper.longest)
+    return look_at_start(f, length);
+  taylor_decay all = {.nearest_zero = INFINITY};
+  for (size_t i = 0; i < flow->pieces; i++) {
+    make(f, i, length);
+    all = taylor_decay_join(all, lattice_series_decay(f->series));
+  }
+  return all;
+}
+
+static void shorten(ric_flow *flow, double length) {
+  lattice_flow *f = self(flow);
+  if (flow->pieces == 1)
+    lattice_series_shorten(f->series, flow->q, flow->u, length);
+  else
+    f->made = SIZE_MAX;
+  f->ended = 0;
+}
+
+static ric_status step(ric_flow *flow, double stop, ric_error *error) {
+  lattice_flow *f = self(flow);
+  double limit;
+  flow->counts.force_evaluations++;
+  RIC_TRY(lattice_flow_take_contacts(f, stop < flow->time ? -1 : 1, &limit, error));
+  return taylor_stepper_choose(&f->stepper, stop, limit, f->acting_count > 0, error);
 }
 
 static void swap(double **a, double **b) {
@@ -99,9 +131,9 @@ static ric_status allocate(lattice_flow *f, ric_error *error) {
   if (!f->q_next || !f->u_next || !f->held || !f->pressed)
     return ric_fail(error, RIC_ENOMEM, "no memory for a flow of %zu coordinates", n);
   f->acting = f->pressed + compliant;
-  RIC_TRY(lattice_series_create(f->lattice, f->order, f->block, &f->series, error));
+  RIC_TRY(lattice_series_create(f->lattice, f->stepper.order, f->block, &f->series, error));
   if (f->base.pieces > 1 && obstacles > 0)
-    RIC_TRY(lattice_series_create(f->lattice, f->order, 3, &f->aside, error));
+    RIC_TRY(lattice_series_create(f->lattice, f->stepper.order, 3, &f->aside, error));
   return RIC_OK;
 }
 
@@ -119,16 +151,15 @@ static bool lattice_is_linear(const ric_lattice *l) {
 }
 
 /* Order, step and blocks. */
-static void plan(lattice_flow *f, const ric_flow_options *o) {
+static void plan(lattice_flow *f) {
   const ric_lattice *l = f->lattice;
   size_t n = l->particles, pieces = (n + LATTICE_SERIES_BLOCK - 1) / LATTICE_SERIES_BLOCK;
   bool forced = l->force_cos || l->force_sin;
-  f->order = o->order ? o->order : lattice_flow_order(o->tolerance);
-  double reach = lattice_flow_reach(o->tolerance, f->order);
-  f->linear = lattice_is_linear(l);
-  f->longest = reach / lattice_rate_bound(l);
-  f->longest_forced = forced ? reach / fabs(l->frequency) : INFINITY;
-  f->trial = lattice_flow_first_trial(f);
+  double stiffness, damping;
+  lattice_row_bounds(l, &stiffness, &damping);
+  f->stepper =
+      (taylor_stepper){.flow = &f->base, .expand = expand, .shorten = shorten, .by_bound = lattice_is_linear(l)};
+  taylor_stepper_plan(&f->stepper, taylor_rate_bound(stiffness, damping), forced ? l->frequency : 0);
   f->block = (n + pieces - 1) / pieces;
   f->base.pieces = (n + f->block - 1) / f->block;
 }
@@ -146,7 +177,7 @@ ric_status lattice_flow_create(const ric_system *system, const ric_flow_options 
   f->lattice = lattice_system_lattice(system);
   f->made = SIZE_MAX;
   f->contacts_changed = f->aside_stale = true;
-  plan(f, options);
+  plan(f);
   status = allocate(f, error);
   if (status != RIC_OK)
     destroy(&f->base);

@@ -122,11 +122,12 @@ static void load_contacts(lattice_series *s, const series_run *run) {
     hold(s, c->held[k] + shift);
   for (size_t k = first_pressed(c, run->particle); k < c->pressed_count && c->pressed[k].coordinate < end; k++) {
     const lattice_press *p = &c->pressed[k];
-    size_t column = p->coordinate + shift, at = b->presses.count++;
-    s->press[at] = p;
-    b->presses.column[at] = column;
-    b->presses.sign[at] = p->side;
-    b->presses.strength[at] = p->side * p->stiffness * b->row[ROW_INVERSE_MASS][column];
+    size_t column = p->coordinate + shift;
+    block_press *press = &b->presses.press[b->presses.count++];
+    press->column = column;
+    press->side = p->side;
+    press->position = p->position;
+    press->strength = p->side * p->stiffness * b->row[ROW_INVERSE_MASS][column];
   }
 }
 

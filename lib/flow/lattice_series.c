@@ -96,9 +96,7 @@ void lattice_series_destroy(lattice_series **series) {
   if (!series || !*series)
     return;
   block_presses *p = &(*series)->block.presses;
-  free(p->column);
-  free(p->sign);
-  free((*series)->press);
+  free(p->press);
   free((*series)->held_column);
   free((*series)->store);
   free(*series);
@@ -121,22 +119,14 @@ static size_t most_presses(const lattice_series *s, const lattice_contacts *cont
 
 static ric_status reserve_presses(lattice_series *s, size_t count, ric_error *error) {
   block_presses *p = &s->block.presses;
-  size_t levels = (size_t)s->block.order + 1;
   p->count = 0;
   if (count <= p->capacity)
     return RIC_OK;
-  free(p->column);
-  free(p->sign);
-  free(s->press);
+  free(p->press);
   p->capacity = 0;
-  p->column = malloc(count * sizeof *p->column);
-  s->press = malloc(count * sizeof *s->press);
-  p->sign = malloc((2 + 2 * levels) * count * sizeof *p->sign);
-  if (!p->column || !p->sign || !s->press)
+  p->press = malloc(count * sizeof *p->press);
+  if (!p->press)
     return ric_fail(error, RIC_ENOMEM, "no memory for %zu pressed contacts", count);
-  p->strength = p->sign + count;
-  p->u = p->strength + count;
-  p->p = p->u + levels * count;
   p->capacity = count;
   return RIC_OK;
 }
@@ -184,8 +174,10 @@ static void load_state(lattice_series *s, const double *q, const double *v, doub
     c0[done] = c1[done] = 0;
   for (size_t k = 0; k < s->held_count; k++)
     c1[s->held_column[k]] = 0;
-  for (size_t k = 0; k < b->presses.count; k++)
-    b->presses.u[k] = s->press[k]->side * (s->press[k]->position - c0[b->presses.column[k]]);
+  for (size_t k = 0; k < b->presses.count; k++) {
+    block_press *p = &b->presses.press[k];
+    p->start = p->side * (p->position - c0[p->column]);
+  }
   lattice_block_close_ring(b, 0);
   lattice_block_close_ring(b, 1);
 }
@@ -226,11 +218,11 @@ ric_segment lattice_series_segment(lattice_series *s, const double *q, const dou
   return s->segment;
 }
 
-ric_segment lattice_series_shorten(lattice_series *s, const double *q, const double *v, double r) {
+ric_segment lattice_series_shorten(lattice_series *s, const double *q, const double *v, double length) {
   lattice_block *b = &s->block;
-  double factor = r;
-  s->segment.length *= r;
-  load_state(s, q, v, s->segment.length);
+  double r = length / s->segment.length, factor = r;
+  s->segment.length = length;
+  load_state(s, q, v, length);
   for (int j = 2; j <= b->order; j++) {
     double *c = b->c + (size_t)j * b->stride;
     factor *= r;

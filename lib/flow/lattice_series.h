@@ -9,6 +9,7 @@
 
 #include "ricochet/lattice.h"
 #include "ricochet/segment.h"
+#include "taylor_step.h"
 
 enum {
   LATTICE_SERIES_BLOCK = 256, /* particles of a block: 27 coefficients of 282 particles are 61 kB */
@@ -55,16 +56,12 @@ ric_segment lattice_series_segment(lattice_series *series, const double *q, cons
 /** The last segment. */
 ric_segment lattice_series_last(const lattice_series *series);
 
-/** How the coefficients of the last segment fall off. */
-typedef struct lattice_decay {
-  double change;       /* largest |c_1|, |c_2|, |c_3|; NaN if any of the last two coefficients is not finite */
-  double tail[2];      /* largest |c_{order - 1}|, |c_order| */
-  double nearest_zero; /* lower bound of |x| for zeros of a pressed contact's u: beyond them its force has no series */
-} lattice_decay;
-lattice_decay lattice_series_decay(const lattice_series *series);
+/** How the coefficients of the last segment fall off; branch points are those of its own pressed contacts. */
+taylor_decay lattice_series_decay(const lattice_series *series);
 
-/** Makes the last segment shorter: its length times 0 < r < 1, without a new recurrence. */
-ric_segment lattice_series_shorten(lattice_series *series, const double *q, const double *v, double r);
+/** Makes the last segment shorter without a new recurrence.
+ *  @param length  of the sign that it had */
+ric_segment lattice_series_shorten(lattice_series *series, const double *q, const double *v, double length);
 
 /** Force on a particle of the last segment along it, as if it were not held: its springs, its links and the forcing,
  *  without Hertz contacts. Its neighbours must belong to the segment, or the segment be the whole lattice.

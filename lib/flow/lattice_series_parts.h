@@ -12,9 +12,8 @@ struct lattice_series {
   const ric_lattice *lattice;
   lattice_contacts contacts;
   bool ring;
-  ric_segment segment;         /* the last one */
-  size_t loaded_count;         /* particles of the stretch whose rows are loaded, from segment.first on; 0: none */
-  const lattice_press **press; /* [presses.capacity] those of the block */
+  ric_segment segment; /* the last one */
+  size_t loaded_count; /* particles of the stretch whose rows are loaded, from segment.first on; 0: none */
   size_t held_count;
   size_t *held_column; /* [stride] */
   double cosine[RIC_POLY_DEGREE + 1], sine[RIC_POLY_DEGREE + 1];

@@ -4,9 +4,9 @@
  *
  *   c_{j+2} = h^2 / ((j+1)(j+2)) [M^-1 (f_j - K c_j) - M^-1 C (j+1) c_{j+1} / h],
  *
- * where held contacts project the bracket at every level, which gives their forces level by level, too. A step is
- * expanded over the natural time of the system and rescaled to the length that the tolerance allows. */
-#include <float.h>
+ * where held contacts project the bracket at every level, which gives their forces level by level, too. The length of a
+ * step follows from the decay of the coefficients, which costs little beside products with matrices: row sums of a
+ * dense M^-1 K exceed its frequencies, by half for some tens of coordinates. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,10 +14,7 @@
 #include "flow_method.h"
 #include "hertz_series.h"
 #include "model/mck_hold.h"
-#include "taylor_step.h"
-
-/* Trial steps grow at most so much: beyond it, rounding errors in the fastest modes would be amplified. */
-static const double most_growth = 4;
+#include "taylor_stepper.h"
 
 typedef struct pressed_contact {
   const ric_obstacle *obstacle;
@@ -27,9 +24,8 @@ typedef struct pressed_contact {
 
 typedef struct mck_flow {
   ric_flow base;
-  int order;
-  double natural;       /* time in which the fastest linear motion turns by two radians; infinite without forces */
-  double forced;        /* size that forcing gives a motion in that time */
+  taylor_stepper stepper;
+  double expanded;      /* length of the series */
   double *coef;         /* [order + 1][n] */
   double *acceleration; /* [n] */
   double *reaction;     /* [held coordinates][order - 1] coefficients of mu */
@@ -46,11 +42,9 @@ static double *level(const mck_flow *f, int j) {
   return f->coef + (size_t)j * f->base.system->coordinates;
 }
 
-static double largest(const double *x, size_t n) {
-  double most = 0;
-  for (size_t i = 0; i < n; i++)
-    most = fabs(x[i]) > most || isnan(x[i]) ? fabs(x[i]) : most;
-  return most;
+/* Coefficients [order - 1] of the force of a held coordinate. */
+static double *reaction_of(const mck_flow *f, size_t k) {
+  return f->reaction + k * (size_t)(f->stepper.order - 1);
 }
 
 /* --- expansion ------------------------------------------------------------------------------------------------- */
@@ -59,6 +53,12 @@ static double largest(const double *x, size_t n) {
 typedef struct harmonic {
   double cosine, sine;
 } harmonic;
+
+static harmonic harmonic_at(const mck_system *s, double time) {
+  if (!s->force_cos && !s->force_sin)
+    return (harmonic){0};
+  return (harmonic){cos(s->frequency * time), sin(s->frequency * time)};
+}
 
 static void harmonic_next(harmonic *w, double turn, int j) {
   *w = (harmonic){-turn / (j + 1) * w->sine, turn / (j + 1) * w->cosine};
@@ -94,113 +94,55 @@ static void accelerate(mck_flow *f, double h, int j, harmonic w) {
   add_pressure(f, j);
   mck_hold_project(&f->hold, s, f->acceleration);
   for (size_t k = 0; k < f->hold.count; k++)
-    f->reaction[k * (size_t)(f->order - 1) + (size_t)j] = f->hold.force[k];
+    reaction_of(f, k)[j] = f->hold.force[k];
 }
 
-/* All coefficients over a step h. @returns whether they are finite. */
-static bool expand(mck_flow *f, double h) {
-  const mck_system *s = system_of(f);
-  size_t n = s->base.coordinates;
-  harmonic w = {cos(s->frequency * f->base.time), sin(s->frequency * f->base.time)};
+static void set_start(mck_flow *f, double h) {
+  size_t n = f->base.system->coordinates;
   memcpy(level(f, 0), f->base.q, n * sizeof *f->coef);
   for (size_t i = 0; i < n; i++)
     level(f, 1)[i] = h * f->base.u[i];
   for (size_t k = 0; k < f->hold.count; k++)
     level(f, 1)[f->hold.coordinate[k]] = 0; /* a held coordinate must not drift by a rounding error of its rate */
-  for (int j = 0; j + 2 <= f->order; j++) {
-    double scale = h * h / ((j + 1) * (j + 2)), *restrict next = level(f, j + 2);
+}
+
+static taylor_decay decay(const mck_flow *f) {
+  size_t n = f->base.system->coordinates;
+  taylor_decay d = taylor_decay_of(f->coef, n, n, f->stepper.order);
+  for (size_t k = 0; k < f->pressed_count; k++)
+    if (f->pressed[k].acts)
+      d.nearest_zero = fmin(d.nearest_zero, hertz_series_nearest_zero(&f->pressed[k].series));
+  return d;
+}
+
+/* All coefficients over a step h. */
+static taylor_decay mck_expand(ric_flow *flow, double h) {
+  mck_flow *f = (mck_flow *)flow;
+  const mck_system *s = system_of(f);
+  harmonic w = harmonic_at(s, flow->time);
+  set_start(f, h);
+  for (int j = 0; j + 2 <= f->stepper.order; j++) {
+    double h2 = h * h, divisor = (j + 1) * (j + 2), *restrict next = level(f, j + 2);
     accelerate(f, h, j, w);
-    for (size_t i = 0; i < n; i++)
-      next[i] = scale * f->acceleration[i];
+    for (size_t i = 0; i < s->base.coordinates; i++)
+      next[i] = h2 * f->acceleration[i] / divisor; /* see lattice_block.c for quotients */
     harmonic_next(&w, s->frequency * h, j);
   }
-  return isfinite(largest(level(f, f->order - 1), n)) && isfinite(largest(level(f, f->order), n));
+  f->expanded = h;
+  return decay(f);
 }
 
-/* The expansion over theta times the step. */
-static void rescale(mck_flow *f, double theta) {
-  size_t n = f->base.system->coordinates;
-  double power = theta;
-  for (int j = 1; j <= f->order; j++, power *= theta) {
+static void mck_shorten(ric_flow *flow, double length) {
+  mck_flow *f = (mck_flow *)flow;
+  double theta = length / f->expanded, power = theta;
+  for (int j = 1; j <= f->stepper.order; j++, power *= theta) {
     double *c = level(f, j);
-    for (size_t i = 0; i < n; i++)
+    for (size_t i = 0; i < flow->system->coordinates; i++)
       c[i] *= power;
-    for (size_t k = 0; j <= f->order - 2 && k < f->hold.count; k++)
-      f->reaction[k * (size_t)(f->order - 1) + (size_t)j] *= power;
+    for (size_t k = 0; j <= f->stepper.order - 2 && k < f->hold.count; k++)
+      reaction_of(f, k)[j] *= power;
   }
-}
-
-/* --- steps ----------------------------------------------------------------------------------------------------- */
-
-static ric_status blows_up(const mck_flow *f, double length, ric_error *error) {
-  return ric_fail(error, RIC_ENUMERIC, "at t = %.17g: the motion blows up, a step of %g is all that accuracy allows",
-                  f->base.time, length);
-}
-
-static double cap(const mck_flow *f, double length) {
-  if (f->base.options.step > 0)
-    length = fmin(length, f->base.options.step);
-  return fmin(length, f->base.options.longest_step);
-}
-
-static ric_status finish(mck_flow *f, double stop, double length, ric_error *error) {
-  double remaining = stop - f->base.time, bound = 0; /* of the state anywhere in the step */
-  size_t n = f->base.system->coordinates;
-  if (length != remaining && taylor_step_vanishes(f->base.time, length))
-    return blows_up(f, length, error);
-  for (int j = 0; j <= f->order; j++)
-    bound += (j + 1) * largest(level(f, j), n);
-  if (!isfinite(bound) || !isfinite(bound / length))
-    return blows_up(f, length, error);
-  f->base.length = length;
-  f->base.end = length == remaining ? stop : f->base.time + length;
-  return RIC_OK;
-}
-
-static ric_status fixed_step(mck_flow *f, double stop, ric_error *error) {
-  double length = taylor_step_length(stop - f->base.time, cap(f, INFINITY), true);
-  return expand(f, length) ? finish(f, stop, length, error) : blows_up(f, length, error);
-}
-
-/* Reactions of one level as the coefficients of two levels higher that they would be without the contacts. */
-static double largest_reaction(const mck_flow *f, double trial, int j) {
-  double most = 0;
-  for (size_t k = 0; k < f->hold.count; k++) {
-    double force = f->reaction[k * (size_t)(f->order - 1) + (size_t)j];
-    most = fmax(most, fabs(force) * mck_mobility(system_of(f), f->hold.coordinate[k]));
-  }
-  return most * trial * trial / ((j + 1) * (j + 2));
-}
-
-static double largest_of_level(const mck_flow *f, double trial, int j) {
-  return fmax(largest(level(f, j), f->base.system->coordinates), largest_reaction(f, trial, j - 2));
-}
-
-static taylor_decay decay(const mck_flow *f, double trial) {
-  size_t n = f->base.system->coordinates;
-  return (taylor_decay){.position = largest(level(f, 0), n),
-                        .rate = largest(level(f, 1), n),
-                        .bend = largest(level(f, 2), n),
-                        .before_last = largest_of_level(f, trial, f->order - 1),
-                        .last = largest_of_level(f, trial, f->order),
-                        .forcing = f->forced,
-                        .fraction = fabs(trial) / f->natural};
-}
-
-/* Expands over the natural time, or shorter where that overflows, and rescales to at most `longest`. */
-static ric_status measured_step(mck_flow *f, double stop, double longest, ric_error *error) {
-  double remaining = stop - f->base.time;
-  double trial = copysign(isfinite(f->natural) ? f->natural : fabs(remaining), remaining);
-  while (!expand(f, trial)) {
-    trial /= 1024;
-    if (taylor_step_vanishes(f->base.time, trial))
-      return blows_up(f, trial, error);
-  }
-  taylor_decay d = decay(f, trial);
-  double theta = taylor_step_factor(&d, f->order, f->base.options.tolerance, most_growth);
-  double length = taylor_step_length(remaining, fmin(longest, cap(f, fabs(trial) * theta)), false);
-  rescale(f, length / trial);
-  return finish(f, stop, length, error);
+  f->expanded = length;
 }
 
 /* --- Hertz contacts -------------------------------------------------------------------------------------------- */
@@ -211,36 +153,30 @@ static double penetration(const mck_flow *f, const pressed_contact *c) {
 
 /* Accelerations at the start of the step. */
 static void accelerate_start(mck_flow *f) {
-  size_t n = f->base.system->coordinates;
-  double time = system_of(f)->frequency * f->base.time;
-  memcpy(level(f, 0), f->base.q, n * sizeof *f->coef);
-  memcpy(level(f, 1), f->base.u, n * sizeof *f->coef);
+  set_start(f, 1);
   for (size_t k = 0; k < f->pressed_count; k++)
     f->pressed[k].acts = penetration(f, &f->pressed[k]) > 0;
-  accelerate(f, 1, 0, (harmonic){cos(time), sin(time)});
+  accelerate(f, 1, 0, harmonic_at(system_of(f), f->base.time));
 }
 
-/* Takes the forces of contacts that have just begun, or are about to end, out of the step.
- * @returns the longest step for which they do not matter; INFINITY when there are none */
-static double set_forces(mck_flow *f, double stop) {
-  size_t n = f->base.system->coordinates;
-  double room = fmin(fabs(stop - f->base.time), f->natural), shortest = INFINITY;
-  double speed = fmax(largest(f->base.u, n), fmax(largest(f->base.q, n), f->forced) / f->natural);
-  accelerate_start(f);
+/* Sorts out which pressed contacts act; @returns whether one does. */
+static bool choose_acting(mck_flow *f, int direction, double *limit) {
+  double natural = taylor_stepper_natural(&f->stepper), least = taylor_step_least(f->base.time);
+  bool any = false;
+  *limit = INFINITY;
+  if (f->pressed_count > 0)
+    accelerate_start(f);
   for (size_t k = 0; k < f->pressed_count; k++) {
-    pressed_contact *c = &f->pressed[k];
-    size_t i = c->obstacle->coordinate;
-    hertz_begin b = {.penetration = penetration(f, c),
-                     .rate = -c->obstacle->side * f->base.u[i],
-                     .acceleration = -c->obstacle->side * f->acceleration[i],
-                     .strength = c->obstacle->stiffness * mck_mobility(system_of(f), i)};
-    double step = hertz_begin_step(&b, room, f->base.options.tolerance * speed);
-    if (!hertz_begins(&b, step))
-      continue;
-    c->acts = false;
-    shortest = fmin(shortest, step);
+    pressed_contact *p = &f->pressed[k];
+    size_t i = p->obstacle->coordinate;
+    hertz_contact c = {.penetration = penetration(f, p),
+                       .rate = -p->obstacle->side * direction * f->base.u[i],
+                       .bend = fabs(f->acceleration[i]),
+                       .strength = p->obstacle->stiffness * mck_mobility(system_of(f), i)};
+    p->acts = hertz_acts(&c, f->base.options.tolerance, natural, least, limit);
+    any |= p->acts;
   }
-  return fmax(shortest, 8 * DBL_EPSILON * fabs(f->base.time));
+  return any;
 }
 
 /* --- method ---------------------------------------------------------------------------------------------------- */
@@ -250,6 +186,7 @@ static ric_status mck_start(ric_flow *flow, ric_error *error) {
   const ric_system *s = flow->system;
   const char *trouble = mck_hold_set(&f->hold, mck_of(s), flow->contact);
   f->pressed_count = 0;
+  f->stepper.trial = f->stepper.longest; /* steps before say nothing about those after contacts have changed */
   for (size_t k = 0; k < s->obstacle_count; k++)
     if (flow->contact[k] == CONTACT_PRESSED && isfinite(s->obstacles[k].stiffness))
       f->pressed[f->pressed_count++].obstacle = &s->obstacles[k];
@@ -258,18 +195,22 @@ static ric_status mck_start(ric_flow *flow, ric_error *error) {
 
 static ric_status mck_step(ric_flow *flow, double stop, ric_error *error) {
   mck_flow *f = (mck_flow *)flow;
+  double limit;
   flow->counts.force_evaluations++;
-  if (f->pressed_count > 0)
-    return measured_step(f, stop, set_forces(f, stop), error);
-  return flow->options.step > 0 ? fixed_step(f, stop, error) : measured_step(f, stop, INFINITY, error);
+  bool pressed = choose_acting(f, stop < flow->time ? -1 : 1, &limit);
+  return taylor_stepper_choose(&f->stepper, stop, limit, pressed, error);
 }
 
 static ric_segment mck_piece(ric_flow *flow, size_t index) {
   (void)index;
   const mck_flow *f = (const mck_flow *)flow;
   size_t n = flow->system->coordinates;
-  return (ric_segment){
-      .coordinates = n, .stride = n, .degree = f->order, .start = flow->time, .length = flow->length, .coef = f->coef};
+  return (ric_segment){.coordinates = n,
+                       .stride = n,
+                       .degree = f->stepper.order,
+                       .start = flow->time,
+                       .length = flow->length,
+                       .coef = f->coef};
 }
 
 static void mck_accept(ric_flow *flow, double x) {
@@ -280,13 +221,13 @@ static void mck_accept(ric_flow *flow, double x) {
 static int mck_reaction(ric_flow *flow, size_t obstacle, double *c) {
   const mck_flow *f = (const mck_flow *)flow;
   const ric_obstacle *o = &flow->system->obstacles[obstacle];
-  size_t k = mck_hold_find(&f->hold, o->coordinate), levels = (size_t)f->order - 1;
+  size_t k = mck_hold_find(&f->hold, o->coordinate), levels = (size_t)f->stepper.order - 1;
   c[0] = 0;
   if (k == f->hold.count || flow->contact[obstacle] != CONTACT_HELD)
     return 0;
   for (size_t j = 0; j < levels; j++)
-    c[j] = o->side * f->reaction[k * levels + j] / (double)f->hold.sharing[k];
-  return f->order - 2;
+    c[j] = o->side * reaction_of(f, k)[j] / (double)f->hold.sharing[k];
+  return f->stepper.order - 2;
 }
 
 static void mck_flow_destroy(ric_flow *flow) {
@@ -315,7 +256,7 @@ static size_t obstacles_that(const ric_system *s, bool comply) {
 }
 
 static bool allocate(mck_flow *f, const mck_system *s) {
-  size_t n = s->base.coordinates, levels = (size_t)f->order + 1;
+  size_t n = s->base.coordinates, levels = (size_t)f->stepper.order + 1;
   size_t rigid = obstacles_that(&s->base, false), compliant = obstacles_that(&s->base, true);
   f->coef = calloc(levels * n, sizeof *f->coef);
   f->acceleration = calloc(n, sizeof *f->acceleration);
@@ -324,14 +265,11 @@ static bool allocate(mck_flow *f, const mck_system *s) {
   return mck_hold_init(&f->hold, s, NULL) && f->coef && f->acceleration && f->reaction && f->pressed;
 }
 
-static void find_scales(mck_flow *f, const mck_system *s) {
-  size_t n = s->base.coordinates;
-  double cosine = s->force_cos ? largest(s->force_cos, n) : 0, sine = s->force_sin ? largest(s->force_sin, n) : 0;
-  double fastest = fmax(sqrt(mck_rows_norm(&s->stiffness)), mck_rows_norm(&s->damping));
-  if (cosine + sine > 0)
-    fastest = fmax(fastest, fabs(s->frequency));
-  f->natural = fastest > 0 ? 2 / fastest : INFINITY;
-  f->forced = fastest > 0 ? (cosine + sine) * f->natural * f->natural : 0;
+static void plan(mck_flow *f, const mck_system *s) {
+  bool forced = s->force_cos || s->force_sin;
+  f->stepper = (taylor_stepper){.flow = &f->base, .expand = mck_expand, .shorten = mck_shorten};
+  taylor_stepper_plan(&f->stepper, taylor_rate_bound(mck_rows_norm(&s->stiffness), mck_rows_norm(&s->damping)),
+                      forced ? s->frequency : 0);
 }
 
 ric_status mck_flow_create(const ric_system *system, const ric_flow_options *options, ric_flow **flow,
@@ -345,8 +283,7 @@ ric_status mck_flow_create(const ric_system *system, const ric_flow_options *opt
     free(f);
     return status;
   }
-  f->order = options->order ? options->order : taylor_order(options->tolerance);
-  find_scales(f, mck_of(system));
+  plan(f, mck_of(system));
   if (!allocate(f, mck_of(system))) {
     mck_flow_destroy(&f->base);
     return ric_fail(error, RIC_ENOMEM, "no memory for a flow of %zu coordinates", system->coordinates);

@@ -1,28 +1,43 @@
-/* Order and step of Taylor flows from the tolerance: internal to the room.
+/* Order and step of Taylor flows: internal to the room.
  *
- * A flow expands the motion over a trial step, sees how its coefficients decay, and rescales them to the step that the
- * tolerance allows: c_j of a step theta times as long is theta^j c_j. Pure functions, for every Taylor flow. */
+ * Pure rules for every Taylor flow. A linear motion e^{s t} with |s| h <= r has coefficients r^j / j! and sums of
+ * moduli below exp(r): a bound of |s| gives its step. Other motions are expanded over a trial step; c_j of a step theta
+ * times as long is theta^j c_j, so that the last coefficients tell what the step may be. */
 #ifndef RICOCHET_TAYLOR_STEP_H
 #define RICOCHET_TAYLOR_STEP_H
 
 #include <stdbool.h>
+#include <stddef.h>
 
-/** Order at which steps are about the natural time of the motion: 24 at 1e-16, between 4 and 30. */
+/** Order at which linear motions take the longest step: 26 at 1e-16, between 4 and 30. */
 int taylor_order(double tolerance);
 
-/** Largest absolute values, over all coordinates, of coefficients of a trial step. */
+/** Longest step times |s| for linear motions, at most 2.2, which a given order may not reach. */
+double taylor_reach(double tolerance, int order);
+
+/** Bound of |s| over the roots e^{s t} of q'' + C q' + K q = 0, from norms of K and C. */
+double taylor_rate_bound(double stiffness, double damping);
+
+/** Largest absolute value of x [count]; not finite when one of them is not. */
+double taylor_largest(const double *x, size_t count);
+
+/** How the coefficients of a step fall off. */
 typedef struct taylor_decay {
-  double position, rate, bend; /* of c_0, c_1 and c_2 */
-  double before_last, last;    /* of c_{order - 1} and c_order */
-  double forcing;  /* size that forces give a motion in its natural time: it may begin at rest at zero; 0 without */
-  double fraction; /* trial step over the natural time, of the fastest linear motion; 0 if that is infinite */
+  double change;  /* largest |c_1|, |c_2|, |c_3|, or |c_4| where these vanish: zero when the motion is at rest for good;
+                     NaN when the series is no use */
+  double tail[2]; /* largest |c_{order - 1}|, |c_order| */
+  double nearest_zero; /* lower bound of the x at which a branch point lies; INFINITY without */
 } taylor_decay;
 
-/** Factor by which the trial step becomes the longest one whose last two coefficients lie below tolerance times the
- *  size of the state, max(|q|, |h u|, |h^2 u'| / 2); at most `most`. Where a step is shorter than the natural time, as
- *  close to the beginning and end of a Hertz contact, |q| counts by its fraction only: the error of the speeds is that
- *  of the coordinates over the step, and would not be bounded otherwise. */
-double taylor_step_factor(const taylor_decay *decay, int order, double tolerance, double most);
+/** Decay of coefficients [order + 1][stride], of which `count` columns are looked at. */
+taylor_decay taylor_decay_of(const double *coef, size_t stride, size_t count, int order);
+
+/** That of two sets of coordinates together. */
+taylor_decay taylor_decay_join(taylor_decay a, taylor_decay b);
+
+/** Factor, at most 1000, by which the trial step becomes the longest one whose last two coefficients, in coordinates
+ *  and in speeds, lie below a tenth of the tolerance times what changes in the step. */
+double taylor_step_factor(const taylor_decay *decay, int order, double tolerance);
 
 /** Signed length of the next step.
  *  @param remaining  time to the stop, signed, not 0
@@ -32,7 +47,10 @@ double taylor_step_factor(const taylor_decay *decay, int order, double tolerance
  *  @returns `remaining` itself when the step reaches the stop. */
 double taylor_step_length(double remaining, double longest, bool fixed);
 
-/** Whether a step is lost in the rounding of the time. */
+/** Whether a step is lost in the rounding of the time, shorter than 1e-12 (1 + |time|). */
 bool taylor_step_vanishes(double time, double length);
+
+/** A step that is just not lost. */
+double taylor_step_least(double time);
 
 #endif

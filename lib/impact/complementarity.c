@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "model/cholesky.h"
+
 /* An unknown depends on others when so little of its unit diagonal is left: directions of contacts less than 1e-5
  * apart are the same one. */
 static const double dependence_tol = 1e-10;
@@ -98,31 +100,12 @@ static bool scale(problem *p, const double *A, const double *b) {
 
 /* --- Cholesky's factor of A_SS --------------------------------------------------------------------------------- */
 
-/* x = L^-1 x for the first `count` members of S. */
-static void solve_lower(const problem *p, size_t count, double *x) {
-  for (size_t i = 0; i < count; i++) {
-    for (size_t k = 0; k < i; k++)
-      x[i] -= p->factor[i * p->size + k] * x[k];
-    x[i] /= p->factor[i * p->size + i];
-  }
-}
-
-static void solve_upper(const problem *p, double *x) {
-  for (size_t i = p->count; i-- > 0;) {
-    x[i] /= p->factor[i * p->size + i];
-    for (size_t k = 0; k < i; k++)
-      x[k] -= p->factor[i * p->size + k] * x[i];
-  }
-}
-
 /* Row of the factor for member `place` of S; the earlier ones are there. @returns what is left of the diagonal */
 static double factor_row(problem *p, size_t place) {
-  double *row = p->factor + place * p->size, left = p->a[p->set[place] * p->size + p->set[place]];
-  for (size_t k = 0; k < place; k++)
+  double *row = p->factor + place * p->size;
+  for (size_t k = 0; k <= place; k++)
     row[k] = p->a[p->set[place] * p->size + p->set[k]];
-  solve_lower(p, place, row);
-  for (size_t k = 0; k < place; k++)
-    left -= row[k] * row[k];
+  double left = cholesky_row(p->factor, p->size, place);
   row[place] = left > 0 ? sqrt(left) : 0;
   return left;
 }
@@ -189,8 +172,8 @@ static void settle(problem *p) {
     double share;
     for (size_t k = 0; k < p->count; k++)
       p->target[k] = -p->b[p->set[k]];
-    solve_lower(p, p->count, p->target);
-    solve_upper(p, p->target);
+    cholesky_solve_lower(p->factor, p->size, p->count, p->target);
+    cholesky_solve_upper(p->factor, p->size, p->count, p->target);
     for (size_t k = 0; k < p->count; k++)
       p->target[k] -= p->z[p->set[k]];
     size_t blocking = find_blocking(p, p->target, 1, &share);
@@ -222,7 +205,7 @@ static bool is_rounding(const problem *p, size_t enter, const double *direction)
 static const char *exchange(problem *p, size_t enter) {
   double share, *direction = p->target;
   memcpy(direction, p->factor + p->count * p->size, p->count * sizeof *direction);
-  solve_upper(p, direction);
+  cholesky_solve_upper(p->factor, p->size, p->count, direction);
   for (size_t k = 0; k < p->count; k++)
     direction[k] = -direction[k];
   if (is_rounding(p, enter, direction)) {

@@ -109,18 +109,6 @@ static const char *contact_push(const first_order *s, size_t obstacle, double t,
   return limit(s, obstacle, t, x, d);
 }
 
-static const char *list_held(const first_order *s, const unsigned char *contact, size_t *count) {
-  *count = 0;
-  for (size_t j = 0; contact && j < s->model.obstacles; j++) {
-    if (contact[j] != CONTACT_HELD)
-      continue;
-    if (*count == s->held_most)
-      return "more contacts persist than there are states";
-    s->held[(*count)++] = j;
-  }
-  return NULL;
-}
-
 static void swap_rows(double *a, double *b, size_t n, size_t i, size_t j) {
   for (size_t k = 0; k < n && i != j; k++) {
     double value = a[i * n + k];
@@ -172,7 +160,7 @@ static const char *held_row(const first_order *s, size_t k, size_t count, double
 const char *first_order_hold(const first_order *s, const unsigned char *contact, double t, const double *x,
                              double *x_rate, size_t *count) {
   size_t n = s->model.states;
-  TRY_TEXT(list_held(s, contact, count));
+  TRY_TEXT(system_list_held(&s->base, contact, s->held_most, s->held, count));
   for (size_t k = 0; k < *count; k++)
     TRY_TEXT(contact_push(s, s->held[k], t, x, s->direction + k * n));
   for (size_t k = 0; k < *count; k++)

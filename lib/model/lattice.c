@@ -142,9 +142,8 @@ double ric_lattice_energy(const ric_lattice *lattice, const double *q, const dou
   return energy;
 }
 
-/* Largest row sum of |K| / m and of |C| / m: Gershgorin's circles. Links to a wall have no entry beside the diagonal.
- */
-static void row_bounds(const ric_lattice *lattice, double *stiffness, double *damping) {
+/* Gershgorin's circles. Links to a wall have no entry beside the diagonal. */
+void lattice_row_bounds(const ric_lattice *lattice, double *stiffness, double *damping) {
   size_t n = lattice->particles;
   *stiffness = *damping = 0;
   for (size_t i = 0; i < n; i++) {
@@ -161,12 +160,6 @@ static void row_bounds(const ric_lattice *lattice, double *stiffness, double *da
 
 double ric_lattice_frequency_bound(const ric_lattice *lattice) {
   double stiffness, damping;
-  row_bounds(lattice, &stiffness, &damping);
+  lattice_row_bounds(lattice, &stiffness, &damping);
   return sqrt(stiffness);
-}
-
-double lattice_rate_bound(const ric_lattice *lattice) {
-  double stiffness, damping;
-  row_bounds(lattice, &stiffness, &damping);
-  return damping / 2 + sqrt(damping * damping / 4 + stiffness); /* |s|^2 <= damping |s| + stiffness */
 }

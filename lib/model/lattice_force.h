@@ -8,7 +8,7 @@
  *  and the forcing. O(1). */
 double lattice_force(const ric_lattice *lattice, size_t particle, double t, const double *q, const double *v);
 
-/** A bound of |s| over the roots e^{s t} of the linear part with its damping: the rate at which motions can change. */
-double lattice_rate_bound(const ric_lattice *lattice);
+/** Largest row sums of |K| / m and of |C| / m of the linear part. */
+void lattice_row_bounds(const ric_lattice *lattice, double *stiffness, double *damping);
 
 #endif

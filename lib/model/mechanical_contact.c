@@ -52,18 +52,6 @@ const char *mechanical_gap_acceleration(const ric_system *system, size_t obstacl
   return path_derivative(gap_rate_on, &path, step, acceleration);
 }
 
-static const char *list_held(const mechanical *s, const unsigned char *contact, size_t *count) {
-  *count = 0;
-  for (size_t j = 0; contact && j < s->model.obstacles; j++) {
-    if (contact[j] != CONTACT_HELD)
-      continue;
-    if (*count == s->held_most)
-      return "more contacts persist than there are speeds";
-    s->held[(*count)++] = j;
-  }
-  return NULL;
-}
-
 /* g and w = M^-1 g of contact k of the list, and its row of g^T M^-1 g. */
 static const char *held_row(const mechanical *s, size_t k, size_t count, double t, const double *q) {
   size_t m = s->model.speeds;
@@ -81,7 +69,7 @@ static const char *held_row(const mechanical *s, size_t k, size_t count, double 
 const char *mechanical_hold(const mechanical *s, const unsigned char *contact, double t, const double *q,
                             const double *u, const double *q_rate, double *u_rate, size_t *count) {
   size_t m = s->model.speeds;
-  TRY_TEXT(list_held(s, contact, count));
+  TRY_TEXT(system_list_held(&s->base, contact, s->held_most, s->held, count));
   for (size_t k = 0; k < *count; k++) /* all of them first: accelerations use the place of the kinematics */
     TRY_TEXT(held_row(s, k, *count, t, q));
   for (size_t k = 0; k < *count; k++) {

@@ -47,3 +47,16 @@ ric_status ric_system_rate(const ric_system *system, double t, const double *q, 
   const char *trouble = system->model->rate(system, NULL, t, q, u, q_rate, u_rate);
   return trouble ? ric_fail(error, RIC_ECALLBACK, "at t = %g: %s", t, trouble) : RIC_OK;
 }
+
+const char *system_list_held(const ric_system *s, const unsigned char *contact, size_t most, size_t *held,
+                             size_t *count) {
+  *count = 0;
+  for (size_t j = 0; contact && j < s->obstacle_count; j++) {
+    if (contact[j] != CONTACT_HELD)
+      continue;
+    if (*count == most)
+      return "more contacts persist than the motion has directions";
+    held[(*count)++] = j;
+  }
+  return NULL;
+}

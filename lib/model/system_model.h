@@ -80,6 +80,11 @@ double obstacle_restitution(const ric_system *s, size_t obstacle);
 /** First position in by_coordinate whose obstacle has a coordinate >= `coordinate`. */
 size_t system_first_obstacle(const ric_system *s, size_t coordinate);
 
+/** Lists the contacts that are CONTACT_HELD, at most `most` of them, in held. `contact` may be NULL: none.
+ *  @returns NULL, or what went wrong. */
+const char *system_list_held(const ric_system *s, const unsigned char *contact, size_t most, size_t *held,
+                             size_t *count);
+
 /** Hertz's force k max(0, -gap)^{3/2}, and its potential. */
 double hertz_force(double stiffness, double gap);
 double hertz_energy(double stiffness, double gap);

@@ -34,7 +34,8 @@ typedef struct ric_flow_options {
                              cvodes (0, the default, chooses these); in [1e-17, 1e-2] and [1e-14, 1e-2]. For cvodes
                              both in root mean square over (q, u); a state smaller than 1e-3 counts as 1e-3 */
   int order;              /* taylor: degree of the segments, 4 to 30; 0 (default): from the tolerance */
-  double step;            /* taylor: every step has this length; 0 (default): from the tolerance */
+  double step;            /* taylor: every step has this length, or less while a Hertz contact presses; 0 (default):
+                             from the tolerance */
   double longest_step;    /* default INFINITY */
 } ric_flow_options;
 
