@@ -4,7 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "chebyshev.h"
 #include "cvodes_solver.h"
 #include "flow_method.h"
 
@@ -17,7 +16,6 @@ typedef struct cvodes_flow {
   bool callback_failed;
   double *coef; /* [CVODES_ORDER + 1][n + m] of the step */
   int degree;
-  double *q, *u; /* [n], [m] within the step */
 } cvodes_flow;
 
 static const char *rate(void *user, double t, const double *y, double *y_rate) {
@@ -78,12 +76,12 @@ static const char *advance(cvodes_flow *f, double stop) {
     trouble = cvodes_solver_step(&f->solver, stop, &t);
   if (trouble)
     return trouble;
-  f->degree = cvodes_solver_polynomial(&f->solver, flow->time, t - flow->time, f->coef);
+  f->degree = cvodes_solver_polynomial(&f->solver, f->coef);
   if (f->degree < 0)
     return "CVODES gives no polynomial for its step";
   memcpy(f->coef, flow->q, n * sizeof *flow->q); /* equal up to rounding: pieces join exactly */
   memcpy(f->coef + n, flow->u, m * sizeof *flow->u);
-  flow->length = t - flow->time;
+  flow->length = f->solver.end - f->solver.begin;
   flow->end = t;
   f->whole = true;
   return NULL;
@@ -132,36 +130,15 @@ static void accept(ric_flow *flow, double x) {
   ric_segment_state(&segment, x, flow->q, m ? flow->u : NULL);
 }
 
-static int reaction(ric_flow *flow, size_t obstacle, double *c) {
-  cvodes_flow *f = (cvodes_flow *)flow;
-  const ric_system *s = flow->system;
-  ric_segment segment = piece(flow, 0);
-  int degree = f->degree + 2 < CHEBYSHEV_DEGREE ? f->degree + 2 : CHEBYSHEV_DEGREE;
-  double y[CHEBYSHEV_DEGREE + 1], a[CHEBYSHEV_DEGREE + 1];
-  for (int k = 0; k <= degree; k++) {
-    double x = chebyshev_point(k, degree);
-    ric_segment_state(&segment, x, f->q, s->speeds ? f->u : NULL);
-    if (s->model->reaction(s, flow->contact, obstacle, flow->time + x * flow->length, f->q, f->u, &y[k]) ||
-        !isfinite(y[k]))
-      return -1;
-  }
-  chebyshev_coefficients(y, degree, a);
-  chebyshev_to_powers(a, degree, c);
-  return degree;
-}
-
 static void destroy(ric_flow *flow) {
   cvodes_flow *f = (cvodes_flow *)flow;
   cvodes_solver_clear(&f->solver);
   free(f->coef);
-  free(f->q);
-  free(f->u);
   flow_clear(flow);
   free(f);
 }
 
-static const flow_method method = {
-    .start = start, .step = step, .piece = piece, .accept = accept, .reaction = reaction, .destroy = destroy};
+static const flow_method method = {.start = start, .step = step, .piece = piece, .accept = accept, .destroy = destroy};
 
 static ric_status allocate(cvodes_flow *f, const ric_system *system, const ric_flow_options *options,
                            ric_error *error) {
@@ -170,9 +147,7 @@ static ric_status allocate(cvodes_flow *f, const ric_system *system, const ric_f
   f->solver = (cvodes_solver){.size = n + m, .tolerance = options->tolerance, .rate = rate, .user = f};
   f->restart = true;
   f->coef = calloc(CVODES_ORDER + 1, (n + m) * sizeof *f->coef);
-  f->q = calloc(n, sizeof *f->q);
-  f->u = calloc(m ? m : 1, sizeof *f->u);
-  if (!f->coef || !f->q || !f->u)
+  if (!f->coef)
     return ric_fail(error, RIC_ENOMEM, "no memory for the polynomials of %zu numbers", n + m);
   return cvodes_solver_init(&f->solver, options->longest_step, error);
 }

@@ -54,11 +54,11 @@ static int rate_of_state(double t, N_Vector y, N_Vector y_rate, void *user) {
   cvodes_solver *s = user;
   if (s->trouble) /* whatever CVODES tries after a failure */
     return -1;
-  const char *trouble = s->rate(s->user, t, N_VGetArrayPointer(y), N_VGetArrayPointer(y_rate));
+  const char *trouble = s->rate(s->user, s->origin + t, N_VGetArrayPointer(y), N_VGetArrayPointer(y_rate));
   if (!trouble)
     return 0;
   s->trouble = trouble;
-  s->trouble_time = t;
+  s->trouble_time = s->origin + t;
   return -1; /* a smaller step would not help */
 }
 
@@ -113,7 +113,8 @@ void cvodes_solver_clear(cvodes_solver *s) {
 }
 
 const char *cvodes_solver_restart(cvodes_solver *s, double t) {
-  return CVodeReInit(s->memory, t, s->y) ? "CVODES refuses to start" : NULL;
+  s->origin = t;
+  return CVodeReInit(s->memory, 0, s->y) ? "CVODES refuses to start" : NULL;
 }
 
 static const char *text_of(int code) {
@@ -129,17 +130,21 @@ static const char *text_of(int code) {
 }
 
 const char *cvodes_solver_step(cvodes_solver *s, double stop, double *t) {
-  double begin = *t, end;
+  double end;
   s->trouble = NULL;
-  s->trouble_time = begin;
-  int code = CVodeSetStopTime(s->memory, stop);
+  CVodeGetCurrentTime(s->memory, &s->begin);
+  s->trouble_time = s->origin + s->begin;
+  int code = CVodeSetStopTime(s->memory, stop - s->origin);
   if (code == CV_SUCCESS)
-    code = CVode(s->memory, stop, s->y, &end, CV_ONE_STEP);
+    code = CVode(s->memory, stop - s->origin, s->y, &end, CV_ONE_STEP);
   if (code < 0 || s->trouble) /* CVODES may get past a failure with a shorter step; a callback that fails is the end */
     return s->trouble ? s->trouble : text_of(code);
-  if (end == begin || !(root_mean_square(cvodes_solver_state(s), s->size) < greatest_size))
+  if (end == s->begin)
+    return "steps shrink to nothing: the motion blows up, or its forces jump";
+  if (!(root_mean_square(cvodes_solver_state(s), s->size) < greatest_size))
     return "the motion blows up";
-  *t = code == CV_TSTOP_RETURN ? stop : end;
+  s->end = end;
+  *t = code == CV_TSTOP_RETURN ? stop : s->origin + end;
   return NULL;
 }
 
@@ -150,14 +155,14 @@ double cvodes_solver_span(const cvodes_solver *s) {
   return fmax(fabs(last), fabs(next));
 }
 
-int cvodes_solver_polynomial(cvodes_solver *s, double t, double length, double *coef) {
+int cvodes_solver_polynomial(cvodes_solver *s, double *coef) {
   int degree = 0;
   if (CVodeGetLastOrder(s->memory, &degree))
     return -1;
-  double scale = 1; /* length^k / k! */
+  double scale = 1, length = s->end - s->begin; /* scale: length^k / k! */
   for (int k = 0; k <= degree; k++) {
     N_VSetArrayPointer(coef + (size_t)k * s->size, s->row);
-    if (CVodeGetDky(s->memory, t, k, s->row))
+    if (CVodeGetDky(s->memory, s->begin, k, s->row))
       return -1;
     N_VScale(scale, s->row, s->row);
     scale *= length / (k + 1);

@@ -18,6 +18,9 @@ typedef struct cvodes_solver {
   SUNNonlinearSolver iteration;
   N_Vector y, row;
   size_t size;
+  double
+      origin; /* of the time that CVODES sees: that of the last restart, so that early steps are not lost in rounding */
+  double begin, end; /* of the last step, from the origin */
   double tolerance;
   /** Rates of the state [size]. */
   const char *(*rate)(void *user, double t, const double *y, double *y_rate);
@@ -35,14 +38,14 @@ double *cvodes_solver_state(const cvodes_solver *s);
 /** Forgets the history. */
 const char *cvodes_solver_restart(cvodes_solver *s, double t);
 
-/** One step towards `stop`, and not beyond. @param t  time after it; `stop` itself when it was reached */
+/** One step towards `stop`, and not beyond. @param t  set to the time after it; `stop` itself when it was reached */
 const char *cvodes_solver_step(cvodes_solver *s, double stop, double *t);
 
 /** Length of the last step and of the next one that is planned, the larger of the two, >= 0. */
 double cvodes_solver_span(const cvodes_solver *s);
 
-/** The state on the last step as a polynomial in (time - t) / length, coef [CVODES_ORDER + 1][size]; its degree, -1
- *  when t does not lie in the step. */
-int cvodes_solver_polynomial(cvodes_solver *s, double t, double length, double *coef);
+/** The state on the last step as a polynomial in [0, 1], coef [CVODES_ORDER + 1][size]; its degree, -1 when there is
+ *  none. */
+int cvodes_solver_polynomial(cvodes_solver *s, double *coef);
 
 #endif

@@ -13,8 +13,8 @@ typedef struct flow_method {
   ric_segment (*piece)(ric_flow *flow, size_t index);
   /** Moves flow->q and flow->u to position x of the step. */
   void (*accept)(ric_flow *flow, double x);
-  /** Force of a held contact along the step as a polynomial c [RIC_POLY_DEGREE + 1] in x; returns its degree, -1 when a
-   *  callback failed. */
+  /** Force of a held contact along the step as a polynomial c [RIC_POLY_DEGREE + 1] in x; returns its degree, -1 when
+   * it has none. NULL: the flow knows its states only, and forces follow from those. */
   int (*reaction)(ric_flow *flow, size_t obstacle, double *c);
   void (*destroy)(ric_flow *flow);
 } flow_method;

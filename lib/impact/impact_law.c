@@ -86,6 +86,12 @@ static ric_status read_rate(const impact_solver *s, double t, const double *q, c
   return trouble ? blame(error, t, obstacle, trouble) : RIC_OK;
 }
 
+/* Minus the work of an impulse on the speeds before and after, on their mean. The motion of the gap itself, `offset`,
+ * is not the system's. */
+static double work_lost(const impact *c, double offset) {
+  return c->impulse * (offset - (c->rate + c->rate_end) / 2);
+}
+
 /* [FN97] (2.9) for one contact alone. */
 static ric_status apply_alone(impact_solver *s, double t, const double *q, double *u, impact *c, ric_error *error) {
   double e = s->system->model->restitution(s->system, c->obstacle);
@@ -94,7 +100,7 @@ static ric_status apply_alone(impact_solver *s, double t, const double *q, doubl
   c->inverse_mass = product(&s->directions[0], &s->directions[0]);
   c->impulse = c->rate < 0 ? -(1 + e) * c->rate / c->inverse_mass : 0;
   c->rate_end = c->rate < 0 ? -e * c->rate : c->rate;
-  c->loss = c->impulse * -(c->rate + c->rate_end) / 2;
+  c->loss = work_lost(c, s->directions[0].offset);
   c->coupled = false;
   push(&s->directions[0], c->impulse, u);
   return RIC_OK;
@@ -138,7 +144,7 @@ static ric_status apply_together(impact_solver *s, double t, const double *q, do
     for (size_t j = 0; j < count; j++)
       c->rate_end += s->matrix[i * count + j] * s->solution[j];
     c->inverse_mass = s->matrix[i * count + i];
-    c->loss = c->impulse * -(c->rate + c->rate_end) / 2;
+    c->loss = work_lost(c, s->directions[i].offset);
     c->coupled = couples(s->matrix, count, i);
     push(&s->directions[i], c->impulse, u);
   }
@@ -199,7 +205,8 @@ ric_status impact_stick(impact_solver *solver, double t, double *q, double *u, i
     RIC_TRY(find_direction(solver, 0, contact->obstacle, t, q, error));
     push(&solver->directions[0], -left / contact->inverse_mass, u);
     contact->impulse -= left / contact->inverse_mass;
-    contact->loss += left * left / (2 * contact->inverse_mass);
+    contact->rate_end = 0;
+    contact->loss = work_lost(contact, solver->directions[0].offset);
   } else { /* the gap rate is zero between the states before and after */
     double back = left / (left - contact->rate), energy = ric_system_energy(solver->system, t, q, NULL);
     for (size_t i = 0; i < solver->system->coordinates; i++)
@@ -207,6 +214,15 @@ ric_status impact_stick(impact_solver *solver, double t, double *q, double *u, i
     contact->loss += energy - ric_system_energy(solver->system, t, q, NULL);
   }
   contact->rate_end = 0;
+  return RIC_OK;
+}
+
+ric_status impact_direction(impact_solver *solver, double t, const double *q, size_t obstacle,
+                            contact_direction *direction, double *inverse_mass, ric_error *error) {
+  RIC_TRY(reserve(solver, 1, error));
+  RIC_TRY(find_direction(solver, 0, obstacle, t, q, error));
+  *direction = solver->directions[0];
+  *inverse_mass = product(direction, direction);
   return RIC_OK;
 }
 

@@ -21,6 +21,7 @@ typedef struct impact {
   double loss;         /* of energy; NaN where unknown */
   double inverse_mass; /* g^T M^-1 g; NaN for impact maps */
   bool coupled;        /* with another of the list */
+  double accumulation; /* time from now at which the series of its impacts ends; NaN: no chatter */
 } impact;
 
 /** Contacts of one time and what their laws need. Grows; solving again for as many contacts allocates nothing. */
@@ -45,6 +46,11 @@ ric_status impact_apply(impact_solver *solver, double t, double *q, double *u, i
 /** After impact_apply: takes the rate that is left of one contact as well, so that it ends at zero. The contact must
  * not be coupled; for first-order systems it must have been the only one. */
 ric_status impact_stick(impact_solver *solver, double t, double *q, double *u, impact *contact, ric_error *error);
+
+/** Direction of one contact, in the solver's storage until its next call; not for first-order systems.
+ *  @param inverse_mass  g^T M^-1 g */
+ric_status impact_direction(impact_solver *solver, double t, const double *q, size_t obstacle,
+                            contact_direction *direction, double *inverse_mass, ric_error *error);
 
 /** Solves the contact conditions for accelerations of contacts with gap and gap rate zero,
  *

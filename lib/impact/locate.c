@@ -2,14 +2,18 @@
 
 #include <stdlib.h>
 
-enum { HALVINGS = 8 /* of a step whose gaps are hard to interpolate */ };
+enum {
+  MOST_PARTS = 1 << 17, /* into which a step is cut where a function is hard to interpolate */
+  HALVINGS = 40
+};
 
-ric_status locator_init(locator *l, const ric_flow *flow, double grazing_tol, double noise, ric_error *error) {
+ric_status locator_init(locator *l, ric_flow *flow, double grazing_tol, ric_error *error) {
   size_t count = flow->system->obstacle_count;
-  *l = (locator){.grazing_tol = grazing_tol, .noise = noise};
+  *l = (locator){.grazing_tol = grazing_tol};
   RIC_TRY(gap_reader_init(&l->reader, flow, error));
   l->departure = calloc(count ? count : 1, 1);
-  if (l->departure)
+  l->base = calloc(count ? count : 1, sizeof *l->base);
+  if (l->departure && l->base)
     return RIC_OK;
   locator_clear(l);
   return ric_fail(error, RIC_ENOMEM, "no memory for %zu obstacles", count);
@@ -18,6 +22,7 @@ ric_status locator_init(locator *l, const ric_flow *flow, double grazing_tol, do
 void locator_clear(locator *l) {
   gap_reader_clear(&l->reader);
   free(l->departure);
+  free(l->base);
   free(l->lower);
   free(l->upper);
   free(l->roots.hits);
@@ -54,10 +59,11 @@ static ric_status found_root(scan *s, size_t obstacle, double x) {
   return add_hit(&s->l->roots, (hit){.obstacle = obstacle, .x = x, .depth = NAN}, s->error);
 }
 
-/* Cuts a part off behind the first root so far: what comes later is of no interest, and on the short interval that is
- * left the cheap bounds exclude nearly every other contact. @returns false when nothing is left. */
+/* Cuts a part off behind the first root so far, or the horizon: what comes later is of no interest, and on the short
+ * interval that is left the cheap bounds exclude nearly every other contact. @returns false when nothing is left. */
 static bool shorten(const scan *s, gap_part *part) {
-  double y = (s->l->first + s->together - part->from) / (part->to - part->from), power = 1;
+  double end = fmin(s->l->first + s->together, s->l->horizon);
+  double y = (end - part->from) / (part->to - part->from), power = 1;
   if (y >= 1)
     return true;
   for (int j = 1; j <= part->degree; j++)
@@ -66,25 +72,33 @@ static bool shorten(const scan *s, gap_part *part) {
   return y > 0;
 }
 
+/* Whether the slope at the start stands out from the rounding of the coefficients. */
+static bool has_slope(const double *c, int degree) {
+  double size = 0;
+  for (int j = 0; j <= degree; j++)
+    size += fabs(c[j]);
+  return c[1] > 1e-15 * size;
+}
+
 /* First root of a contact's function on a part that starts at the departure, or not. */
-static int first_root(const scan *s, const double *c, int degree, departure from, double *y) {
+static int first_root(const scan *s, size_t obstacle, const gap_part *part, departure from, double *y) {
   double shifted[RIC_POLY_DEGREE + 1];
   if (from == DEPARTED)
-    return ric_poly_first_root(c, degree, y);
-  if (from == DEPARTS_FAST)
-    return ric_poly_first_root(c + 1, degree - 1, y);
-  for (int j = 0; j <= degree; j++)
-    shifted[j] = c[j];
-  shifted[0] += s->l->noise;
-  return ric_poly_first_root(shifted, degree, y);
+    return ric_poly_first_root(part->c, part->degree, y);
+  if (from == DEPARTS_FAST && has_slope(part->c, part->degree))
+    return ric_poly_first_root(part->c + 1, part->degree - 1, y);
+  shifted[0] = part->c[0] + s->l->noise - (from == DEPARTS_FAST ? part->c[0] : s->l->base[obstacle]);
+  for (int j = 1; j <= part->degree; j++)
+    shifted[j] = part->c[j];
+  return ric_poly_first_root(shifted, part->degree, y);
 }
 
 /* Whether the gap comes down to grazing_tol at all: for most contacts that bounds did not exclude, it does not. */
 static bool comes_near(const scan *s, const gap_part *part) {
   double lowered[RIC_POLY_DEGREE + 1];
-  for (int j = 0; j <= part->degree; j++)
+  lowered[0] = part->c[0] - s->l->grazing_tol;
+  for (int j = 1; j <= part->degree; j++)
     lowered[j] = part->c[j];
-  lowered[0] -= s->l->grazing_tol;
   return !ric_poly_is_positive(lowered, part->degree);
 }
 
@@ -94,7 +108,7 @@ static ric_status look_at_gap(scan *s, size_t obstacle, const gap_part *part, de
   *found = false;
   if (from == DEPARTED && !comes_near(s, part))
     return RIC_OK;
-  *found = first_root(s, part->c, part->degree, from, &y);
+  *found = first_root(s, obstacle, part, from, &y);
   if (from != DEPARTS_SLOWLY && ric_poly_first_minimum(part->c, part->degree, s->l->grazing_tol, &at, &least) &&
       least > 0 && !(*found && at >= y))
     RIC_TRY(
@@ -102,60 +116,49 @@ static ric_status look_at_gap(scan *s, size_t obstacle, const gap_part *part, de
   return *found ? found_root(s, obstacle, part->from + y * width) : RIC_OK;
 }
 
-static ric_status scan_gap(scan *s, const ric_segment *piece, size_t obstacle, double from, double to, int halvings,
-                           bool *found) {
+/* The other functions have no near misses. */
+static ric_status look_at_root(scan *s, size_t obstacle, const gap_part *part, departure from, bool *found) {
+  double y;
+  *found = first_root(s, obstacle, part, from, &y);
+  return *found ? found_root(s, obstacle, part->from + y * (part->to - part->from)) : RIC_OK;
+}
+
+static ric_status look(scan *s, size_t obstacle, watch what, const gap_part *part, bool *found) {
+  departure from = part->from == 0 ? (departure)s->l->departure[obstacle] : DEPARTED;
+  bool rigid = !s->flow->system->obstacles || s->flow->system->obstacles[obstacle].stiffness == INFINITY;
+  if (what == WATCH_GAP && rigid)
+    return look_at_gap(s, obstacle, part, from, found);
+  return look_at_root(s, obstacle, part, what == WATCH_FORCE ? DEPARTED : from, found);
+}
+
+static ric_status scan_part(scan *s, const ric_segment *piece, size_t obstacle, watch what, double from, double to,
+                            double before, int halvings, bool *found) {
   gap_part part;
-  bool resolved;
-  const char *trouble = gap_read(&s->l->reader, piece, obstacle, from, to, &part, &resolved);
+  const char *trouble = gap_read(&s->l->reader, piece, obstacle, what, from, to, &part);
   *found = false;
   if (trouble)
-    return ric_fail(s->error, RIC_ECALLBACK, "at t = %g, obstacle %zu: %s", piece->start, obstacle, trouble);
+    return ric_fail(s->error, RIC_ECALLBACK, "at t = %.10g, obstacle %zu: %s", piece->start, obstacle, trouble);
   if (!shorten(s, &part))
     return RIC_OK;
-  if (!resolved && halvings > 0) {
-    double middle = (from + to) / 2;
-    RIC_TRY(scan_gap(s, piece, obstacle, from, middle, halvings - 1, found));
-    return *found ? RIC_OK : scan_gap(s, piece, obstacle, middle, to, halvings - 1, found);
-  }
-  return look_at_gap(s, obstacle, &part, from == 0 ? (departure)s->l->departure[obstacle] : DEPARTED, found);
-}
-
-/* A function on the whole step. */
-static ric_status scan_whole(scan *s, size_t obstacle, gap_part *part, departure from) {
-  double y;
-  if (!shorten(s, part) || !first_root(s, part->c, part->degree, from, &y))
+  if (gap_is_resolved(&part, before))
+    return look(s, obstacle, what, &part, found);
+  if (halvings == 0)
+    return ric_fail(s->error, RIC_ELIMIT, "at t = %.10g, obstacle %zu: its %s varies too fast to be followed",
+                    piece->start + from * piece->length, obstacle, what == WATCH_FORCE ? "force" : "gap");
+  if (s->l->parts++ > MOST_PARTS && from > 0) { /* a step of so much is too long: what has been seen will do */
+    s->l->horizon = from;
     return RIC_OK;
-  return found_root(s, obstacle, y * part->to);
-}
-
-/* A compliant obstacle: its gap while open, minus its gap while pressed. */
-static ric_status scan_compliant(scan *s, const ric_segment *piece, size_t obstacle, contact_state state) {
-  gap_part part;
-  bool resolved;
-  gap_read(&s->l->reader, piece, obstacle, 0, 1, &part, &resolved); /* at a coordinate: cannot fail */
-  for (int j = 0; state == CONTACT_PRESSED && j <= part.degree; j++)
-    part.c[j] = -part.c[j];
-  return scan_whole(s, obstacle, &part, (departure)s->l->departure[obstacle]);
-}
-
-static ric_status scan_held(scan *s, size_t obstacle) {
-  gap_part part = {.from = 0, .to = 1};
-  part.degree = s->flow->method->reaction(s->flow, obstacle, part.c);
-  if (part.degree < 0)
-    return ric_fail(s->error, RIC_ECALLBACK, "at t = %g, obstacle %zu: its force could not be evaluated", s->flow->time,
-                    obstacle);
-  return scan_whole(s, obstacle, &part, DEPARTED);
+  }
+  double middle = (from + to) / 2;
+  RIC_TRY(scan_part(s, piece, obstacle, what, from, middle, part.residual, halvings - 1, found));
+  return *found ? RIC_OK : scan_part(s, piece, obstacle, what, middle, to, part.residual, halvings - 1, found);
 }
 
 static ric_status scan_contact(scan *s, const ric_segment *piece, size_t obstacle) {
-  contact_state state = flow_contact(s->flow, obstacle);
-  const ric_obstacle *o = s->flow->system->obstacles;
+  static const watch watches[] = {
+      [CONTACT_OPEN] = WATCH_GAP, [CONTACT_HELD] = WATCH_FORCE, [CONTACT_PRESSED] = WATCH_PRESS};
   bool found;
-  if (state == CONTACT_HELD)
-    return scan_held(s, obstacle);
-  if (o && o[obstacle].stiffness < INFINITY)
-    return scan_compliant(s, piece, obstacle, state);
-  return scan_gap(s, piece, obstacle, 0, 1, HALVINGS, &found);
+  return scan_part(s, piece, obstacle, watches[flow_contact(s->flow, obstacle)], 0, 1, INFINITY, HALVINGS, &found);
 }
 
 static ric_status make_room(locator *l, size_t width, ric_error *error) {
@@ -219,7 +222,8 @@ static void keep(hit_list *list, double latest) {
 ric_status locator_scan(locator *l, ric_flow *flow, double time_tol, ric_error *error) {
   scan s = {.l = l, .flow = flow, .together = time_tol / fabs(flow->length), .error = error};
   l->first = 2;
-  l->roots.count = l->grazes.count = 0;
+  l->horizon = 1;
+  l->roots.count = l->grazes.count = l->parts = 0;
   for (size_t i = 0; i < ric_flow_pieces(flow) && flow->system->obstacle_count > 0; i++) {
     ric_segment piece = ric_flow_piece(flow, i);
     RIC_TRY(scan_piece(&s, &piece));

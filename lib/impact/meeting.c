@@ -16,11 +16,6 @@ static ric_status add_impact(ric_trajectory *tr, size_t obstacle, ric_error *err
   return RIC_OK;
 }
 
-static ric_status depart(ric_trajectory *tr, size_t obstacle, departure how, ric_error *error) {
-  tr->locator.departure[obstacle] = (unsigned char)how;
-  return index_list_add(&tr->departing, obstacle, error);
-}
-
 static double gap_now(const ric_trajectory *tr, size_t obstacle) {
   return ric_system_gap(tr->system, obstacle, tr->flow->time, tr->flow->q);
 }
@@ -33,14 +28,36 @@ static bool is_compliant(const ric_trajectory *tr, size_t obstacle) {
   return tr->system->obstacles && tr->system->obstacles[obstacle].stiffness < INFINITY;
 }
 
+/* Which way a contact at zero goes: by its rate, or by its acceleration where the rate is zero. */
+static ric_status goes_in(ric_trajectory *tr, size_t obstacle, bool *in, bool *fast, ric_error *error) {
+  double rate = rate_now(tr, obstacle), acceleration;
+  *fast = fabs(rate) > tr->rate_noise;
+  *in = rate < 0;
+  if (*fast)
+    return RIC_OK;
+  RIC_TRY(gap_acceleration(tr, obstacle, &acceleration, error));
+  *in = acceleration < 0;
+  return RIC_OK;
+}
+
+/* A compliant contact at zero presses or is open from now on. */
+static ric_status set_compliant(ric_trajectory *tr, size_t obstacle, ric_error *error) {
+  bool in, fast;
+  RIC_TRY(goes_in(tr, obstacle, &in, &fast, error));
+  flow_set_contact(tr->flow, obstacle, in ? CONTACT_PRESSED : CONTACT_OPEN);
+  return contact_departs(tr, obstacle, fast ? DEPARTS_FAST : DEPARTS_SLOWLY, error);
+}
+
 /* A compliant contact begins or ends to press. */
 static ric_status switch_contact(ric_trajectory *tr, size_t obstacle, ric_error *error) {
-  bool presses = flow_contact(tr->flow, obstacle) == CONTACT_PRESSED;
-  flow_set_contact(tr->flow, obstacle, presses ? CONTACT_OPEN : CONTACT_PRESSED);
-  ric_event event = event_of(tr, presses ? RIC_EVENT_PARTING : RIC_EVENT_CONTACT, obstacle);
+  contact_state before = flow_contact(tr->flow, obstacle);
+  RIC_TRY(set_compliant(tr, obstacle, error));
+  if (flow_contact(tr->flow, obstacle) == before) /* it only touched */
+    return RIC_OK;
+  ric_event event = event_of(tr, before == CONTACT_PRESSED ? RIC_EVENT_PARTING : RIC_EVENT_CONTACT, obstacle);
   event.gap_rate = event.gap_rate_end = rate_now(tr, obstacle);
   trajectory_show(tr, &event);
-  return depart(tr, obstacle, DEPARTS_FAST, error);
+  return RIC_OK;
 }
 
 /* Depth to which a contact that comes in slowly would go, by its acceleration; -INFINITY when it does not turn around
@@ -56,20 +73,12 @@ static ric_status depth_of(ric_trajectory *tr, size_t obstacle, double rate, dou
   return RIC_OK;
 }
 
-/* Sorts an impact's aftermath: leave, settle, or be summed up with those that would follow. */
-static ric_status aftermath(ric_trajectory *tr, impact *c, double threshold, double *accumulation, ric_error *error) {
-  bool chatters = false, alone = !c->coupled && (tr->system->model->direction || tr->impact_count == 1);
-  double duration;
-  *accumulation = NAN;
-  if (c->rate_end > threshold && c->rate < -threshold && alone)
-    RIC_TRY(chatter_ahead(tr, c->obstacle, c->rate_end, &chatters, &duration, error));
-  if (chatters) {
-    *accumulation = tr->flow->time + duration;
+/* An impact's aftermath: leave, settle, or be summed up with those that would follow. */
+static ric_status aftermath(ric_trajectory *tr, impact *c, ric_error *error) {
+  if (!isnan(c->accumulation))
     RIC_TRY(impact_stick(&tr->law, tr->flow->time, tr->flow->q, tr->flow->u, c, error));
-    return index_list_add(&tr->settling, c->obstacle, error);
-  }
-  if (c->rate_end > threshold)
-    return depart(tr, c->obstacle, DEPARTS_FAST, error);
+  if (c->rate_end > tr->rate_noise)
+    return contact_departs(tr, c->obstacle, DEPARTS_FAST, error);
   return index_list_add(&tr->settling, c->obstacle, error);
 }
 
@@ -87,67 +96,69 @@ static ric_status will_rest(ric_trajectory *tr, size_t obstacle, double time, ri
   return index_list_add(&tr->held, obstacle, error);
 }
 
-static ric_event_kind kind_of(const ric_trajectory *tr, const impact *c, size_t hits, double depth,
-                              double accumulation) {
+static ric_event_kind kind_of(const ric_trajectory *tr, const impact *c, size_t hits, double depth) {
   if (c->coupled)
     return RIC_EVENT_COUPLED;
-  if (!isnan(accumulation))
+  if (!isnan(c->accumulation))
     return RIC_EVENT_CHATTER;
   if (depth >= -tr->options.grazing_tol)
     return RIC_EVENT_GRAZING;
   return hits > 1 ? RIC_EVENT_SIMULTANEOUS : RIC_EVENT_TRANSVERSAL;
 }
 
-static void show_impact(ric_trajectory *tr, const impact *c, size_t hits, double depth, double accumulation) {
-  ric_event event = event_of(tr, kind_of(tr, c, hits, depth, accumulation), c->obstacle);
+static void show_impact(ric_trajectory *tr, const impact *c, size_t hits, double depth) {
+  ric_event event = event_of(tr, kind_of(tr, c, hits, depth), c->obstacle);
   event.gap_rate = c->rate;
   event.gap_rate_end = c->rate_end;
   event.impulse = c->impulse;
   event.energy_loss = c->loss;
   event.depth = event.kind == RIC_EVENT_GRAZING ? depth : NAN;
-  event.accumulation = accumulation;
+  event.accumulation = tr->flow->time + c->accumulation;
   trajectory_show(tr, &event);
 }
 
 /* A contact of the list: an impact, or a persistent contact that shares in the impulses. */
-static ric_status conclude_impact(ric_trajectory *tr, impact *c, size_t hits, double threshold, double depth,
-                                  ric_error *error) {
-  double accumulation;
+static ric_status conclude_impact(ric_trajectory *tr, impact *c, size_t hits, double depth, ric_error *error) {
   bool rested = tr->resting[c->obstacle] != RESTS_NOT;
-  RIC_TRY(aftermath(tr, c, threshold, &accumulation, error));
-  if (c->rate < -threshold || c->impulse > 0)
-    show_impact(tr, c, hits, depth, accumulation);
+  if (c->rate < -tr->rate_noise && fabs(gap_now(tr, c->obstacle)) > tr->noise / 100) /* more than rounding */
+    RIC_TRY(contact_put_on(tr, c->obstacle, error));
+  RIC_TRY(aftermath(tr, c, error));
+  if (c->rate < -tr->rate_noise || c->impulse > 0)
+    show_impact(tr, c, hits, depth);
   if (!isnan(c->loss))
     tr->run->impact_loss += c->loss;
-  if (rested && c->rate_end > threshold) {
+  if (rested && c->rate_end > tr->rate_noise) {
     flow_set_contact(tr->flow, c->obstacle, CONTACT_OPEN);
     contact_release(tr, c->obstacle);
   }
-  return isnan(accumulation) ? RIC_OK : will_rest(tr, c->obstacle, accumulation, error);
+  return isnan(c->accumulation) ? RIC_OK : will_rest(tr, c->obstacle, tr->flow->time + c->accumulation, error);
 }
 
 /* Applies the law to tr->impacts, the first `hits` of which are new. */
-static ric_status collide(ric_trajectory *tr, size_t hits, double threshold, ric_error *error) {
+static ric_status collide(ric_trajectory *tr, size_t hits, ric_error *error) {
   ric_flow *f = tr->flow;
   double depth = -INFINITY;
   if (hits == 1)
     RIC_TRY(depth_of(tr, tr->impacts[0].obstacle, rate_now(tr, tr->impacts[0].obstacle), &depth, error));
   RIC_TRY(impact_apply(&tr->law, f->time, f->q, f->u, tr->impacts, tr->impact_count, error));
+  RIC_TRY(chatter_ahead(tr, error));
   for (size_t i = 0; i < tr->impact_count; i++)
-    RIC_TRY(conclude_impact(tr, &tr->impacts[i], hits, threshold, i < hits ? depth : -INFINITY, error));
+    RIC_TRY(conclude_impact(tr, &tr->impacts[i], hits, i < hits ? depth : -INFINITY, error));
   return RIC_OK;
 }
 
 /* A root of an open rigid contact: an impact, a touch with rate zero, or noise on its way out. */
-static ric_status sort_root(ric_trajectory *tr, size_t obstacle, double threshold, ric_error *error) {
+static ric_status sort_root(ric_trajectory *tr, size_t obstacle, ric_error *error) {
   double rate = rate_now(tr, obstacle);
-  if (rate < -threshold)
+  if (rate < -tr->rate_noise)
     return add_impact(tr, obstacle, error);
   ric_event event = event_of(tr, RIC_EVENT_GRAZING, obstacle);
   event.gap_rate = event.gap_rate_end = rate;
   event.depth = gap_now(tr, obstacle);
   trajectory_show(tr, &event);
-  return rate > threshold ? depart(tr, obstacle, DEPARTS_FAST, error) : index_list_add(&tr->settling, obstacle, error);
+  /* leaving, it has a root again only below where it is now, so that time goes on */
+  return rate > tr->rate_noise ? contact_departs(tr, obstacle, DEPARTS_SLOWLY, error)
+                               : index_list_add(&tr->settling, obstacle, error);
 }
 
 /* Contacts that persist have their part in what happens at an impact: impulses where they couple, forces anyway. */
@@ -162,11 +173,11 @@ static ric_status add_held(ric_trajectory *tr, ric_error *error) {
 }
 
 /* Impacts are gathered in tr->impacts; rests and touches in tr->settling. */
-static ric_status resolve(ric_trajectory *tr, double threshold, ric_error *error) {
+static ric_status resolve(ric_trajectory *tr, ric_error *error) {
   size_t hits = tr->impact_count;
   if (hits > 0) {
     RIC_TRY(add_held(tr, error));
-    RIC_TRY(collide(tr, hits, threshold, error));
+    RIC_TRY(collide(tr, hits, error));
   }
   contacts_forget_released(tr);
   RIC_TRY(contacts_settle(tr, error));
@@ -174,7 +185,7 @@ static ric_status resolve(ric_trajectory *tr, double threshold, ric_error *error
 }
 
 ric_status contacts_meet(ric_trajectory *tr, ric_error *error) {
-  double threshold = rest_rate(tr);
+  contacts_measure(tr);
   tr->impact_count = tr->settling.count = 0;
   for (size_t i = 0; i < tr->locator.roots.count; i++) {
     size_t obstacle = tr->locator.roots.hits[i].obstacle;
@@ -183,46 +194,47 @@ ric_status contacts_meet(ric_trajectory *tr, ric_error *error) {
     else if (flow_contact(tr->flow, obstacle) == CONTACT_HELD) {
       flow_set_contact(tr->flow, obstacle, CONTACT_OPEN);
       contact_release(tr, obstacle);
-      RIC_TRY(depart(tr, obstacle, DEPARTS_SLOWLY, error));
+      RIC_TRY(contact_departs(tr, obstacle, DEPARTS_SLOWLY, error));
     } else
-      RIC_TRY(sort_root(tr, obstacle, threshold, error));
+      RIC_TRY(sort_root(tr, obstacle, error));
   }
-  return resolve(tr, threshold, error);
+  return resolve(tr, error);
 }
 
-static ric_status begin_one(ric_trajectory *tr, size_t obstacle, double threshold, ric_error *error) {
-  double gap = gap_now(tr, obstacle), rate = rate_now(tr, obstacle);
+static ric_status begin_one(ric_trajectory *tr, size_t obstacle, ric_error *error) {
+  double gap = gap_now(tr, obstacle), rate = rate_now(tr, obstacle), noise = tr->locator.noise;
   if (is_compliant(tr, obstacle)) {
-    if (gap < -tr->noise || (gap < tr->noise && rate < 0))
+    if (gap < -noise)
       flow_set_contact(tr->flow, obstacle, CONTACT_PRESSED);
-    return fabs(gap) < tr->noise ? depart(tr, obstacle, DEPARTS_FAST, error) : RIC_OK;
+    return fabs(gap) <= noise ? set_compliant(tr, obstacle, error) : RIC_OK;
   }
-  if (gap > tr->noise)
+  if (gap > noise)
     return RIC_OK;
-  if (rate < -threshold)
+  if (rate < -tr->rate_noise)
     return add_impact(tr, obstacle, error);
-  return rate > threshold ? depart(tr, obstacle, DEPARTS_FAST, error) : index_list_add(&tr->settling, obstacle, error);
+  return rate > tr->rate_noise ? contact_departs(tr, obstacle, DEPARTS_FAST, error)
+                               : index_list_add(&tr->settling, obstacle, error);
 }
 
 ric_status contacts_begin(ric_trajectory *tr, ric_error *error) {
-  double threshold = rest_rate(tr);
+  contacts_measure(tr);
   tr->impact_count = tr->settling.count = 0;
   for (size_t j = 0; j < tr->system->obstacle_count; j++)
-    RIC_TRY(begin_one(tr, j, threshold, error));
-  return resolve(tr, threshold, error);
+    RIC_TRY(begin_one(tr, j, error));
+  return resolve(tr, error);
 }
 
 ric_status contacts_depart(ric_trajectory *tr, ric_error *error) {
   size_t kept = 0;
   for (size_t i = 0; i < tr->departing.count; i++) {
     size_t obstacle = tr->departing.items[i];
-    double gap = gap_now(tr, obstacle);
-    if (isnan(gap))
+    double value = departure_value(tr, obstacle);
+    if (isnan(value))
       return ric_fail(error, RIC_ECALLBACK, "at t = %g: the gap of obstacle %zu could not be evaluated", tr->flow->time,
                       obstacle);
     if (tr->locator.departure[obstacle] == DEPARTED)
       continue;
-    if (fabs(gap) > tr->noise)
+    if (value > tr->locator.noise)
       tr->locator.departure[obstacle] = DEPARTED;
     else
       tr->departing.items[kept++] = obstacle;

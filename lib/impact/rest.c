@@ -8,13 +8,29 @@ static ric_status blame(const ric_trajectory *tr, size_t obstacle, const char *t
   return ric_fail(error, RIC_ECALLBACK, "at t = %g, obstacle %zu: %s", tr->flow->time, obstacle, trouble);
 }
 
-double rest_rate(const ric_trajectory *tr) {
-  const double *speeds = tr->system->speeds ? tr->flow->u : tr->flow->q;
-  size_t count = tr->system->speeds ? tr->system->speeds : tr->system->coordinates;
-  double largest = 0;
+static double largest(const double *x, size_t count) {
+  double most = 0;
   for (size_t i = 0; i < count; i++)
-    largest = fmax(largest, fabs(speeds[i]));
-  return tr->noise * (1 + largest);
+    most = fmax(most, fabs(x[i]));
+  return most;
+}
+
+void contacts_measure(ric_trajectory *tr) {
+  size_t n = tr->system->coordinates, m = tr->system->speeds;
+  double place = largest(tr->flow->q, n);
+  tr->locator.noise = tr->noise * (1 + place);
+  tr->rate_noise = tr->noise * (1 + (m ? largest(tr->flow->u, m) : place));
+}
+
+double departure_value(const ric_trajectory *tr, size_t obstacle) {
+  double gap = ric_system_gap(tr->system, obstacle, tr->flow->time, tr->flow->q);
+  return flow_contact(tr->flow, obstacle) == CONTACT_PRESSED ? -gap : gap;
+}
+
+ric_status contact_departs(ric_trajectory *tr, size_t obstacle, departure how, ric_error *error) {
+  tr->locator.departure[obstacle] = (unsigned char)how;
+  tr->locator.base[obstacle] = departure_value(tr, obstacle);
+  return index_list_add(&tr->departing, obstacle, error);
 }
 
 /* Rates of the present state into tr->rates. */
@@ -38,9 +54,8 @@ ric_status gap_acceleration(ric_trajectory *tr, size_t obstacle, double *acceler
   return read_acceleration(tr, f->time, f->q, f->u, obstacle, acceleration, error);
 }
 
-/* Acceleration of the gap a short time from now, the state moved along its rates; tr->rates are lost. */
-static ric_status acceleration_after(ric_trajectory *tr, size_t obstacle, double dt, double *acceleration,
-                                     ric_error *error) {
+/* Rates of the state moved along its present rates for a short time. */
+static ric_status find_rates_after(ric_trajectory *tr, double dt, ric_error *error) {
   const ric_flow *f = tr->flow;
   size_t n = tr->system->coordinates, m = tr->system->speeds;
   double *q = tr->shifted, *u = tr->shifted + n;
@@ -49,28 +64,93 @@ static ric_status acceleration_after(ric_trajectory *tr, size_t obstacle, double
     q[i] = f->q[i] + dt * tr->rates[i];
   for (size_t i = 0; i < m; i++)
     u[i] = f->u[i] + dt * tr->rates[n + i];
-  RIC_TRY(find_rates(tr, f->time + dt, q, u, error));
-  return read_acceleration(tr, f->time + dt, q, u, obstacle, acceleration, error);
+  return find_rates(tr, f->time + dt, q, u, error);
+}
+
+/* Adds scale times the acceleration there of every gap that is still a candidate to its `accumulation`. */
+static ric_status add_jerks(ric_trajectory *tr, double dt, double scale, ric_error *error) {
+  size_t n = tr->system->coordinates;
+  RIC_TRY(find_rates_after(tr, dt, error));
+  for (size_t i = 0; i < tr->impact_count; i++) {
+    double acceleration;
+    if (isnan(tr->impacts[i].accumulation))
+      continue;
+    RIC_TRY(read_acceleration(tr, tr->flow->time + dt, tr->shifted, tr->shifted + n, tr->impacts[i].obstacle,
+                              &acceleration, error));
+    tr->impacts[i].accumulation += scale * acceleration;
+  }
+  return RIC_OK;
+}
+
+static bool may_chatter(const ric_trajectory *tr, const impact *c) {
+  bool alone = !c->coupled && (tr->system->model->direction || tr->impact_count == 1);
+  return alone && c->rate < -tr->rate_noise && c->rate_end > tr->rate_noise && tr->options.chatter_tol > 0 &&
+         tr->system->model->restitution(tr->system, c->obstacle) < 1;
+}
+
+/* Time that a series lasts under the present acceleration. */
+static double first_duration(const ric_trajectory *tr, const impact *c, double acceleration) {
+  double e = tr->system->model->restitution(tr->system, c->obstacle);
+  return acceleration < 0 ? 2 * c->rate_end / (-acceleration * (1 - e)) : INFINITY;
+}
+
+/* Duration below which a series is summed up. An error of the flow's tolerance in the gap makes one of tolerance / w in
+ * the time of landing, w being about the duration, and summing up costs its third power: so the two meet at the fourth
+ * root of the tolerance, and to follow a series any further only costs digits. */
+static double chatter_limit(const ric_trajectory *tr) {
+  double size = tr->locator.noise / tr->noise;
+  return fmax(tr->options.chatter_tol, pow(tr->flow->options.tolerance * size, 0.25));
 }
 
 /* Flights of a gap with acceleration -A + J t that begin at the rate w and shrink by e last, in all and to the order
  * after the first, 2 w / (A (1 - e)) (1 + (2/3) (J / A^2) w / (1 - e)). */
-ric_status chatter_ahead(ric_trajectory *tr, size_t obstacle, double rate, bool *chatters, double *duration,
-                         ric_error *error) {
-  double e = tr->system->model->restitution(tr->system, obstacle), tol = tr->options.chatter_tol;
-  double now, before, after, dt = 1e-5;
-  *chatters = false;
-  if (!(e < 1) || tol == 0)
+static double judge_series(const ric_trajectory *tr, const impact *c, double acceleration, double jerk) {
+  double e = tr->system->model->restitution(tr->system, c->obstacle), duration = first_duration(tr, c, acceleration);
+  if (!(duration * fmax(1, fabs(jerk / acceleration)) <= chatter_limit(tr)))
+    return NAN;
+  return duration * (1 + 2 * jerk * c->rate_end / (3 * acceleration * acceleration * (1 - e)));
+}
+
+/* Those whose series is short under the present acceleration; `accumulation` is 0 for them, ready for the jerk. */
+static ric_status find_candidates(ric_trajectory *tr, bool *any, ric_error *error) {
+  const ric_flow *f = tr->flow;
+  bool asked = false;
+  *any = false;
+  for (size_t i = 0; i < tr->impact_count; i++) {
+    impact *c = &tr->impacts[i];
+    double acceleration;
+    c->accumulation = NAN;
+    if (!may_chatter(tr, c))
+      continue;
+    if (!asked)
+      RIC_TRY(find_rates(tr, f->time, f->q, f->u, error));
+    asked = true;
+    RIC_TRY(read_acceleration(tr, f->time, f->q, f->u, c->obstacle, &acceleration, error));
+    if (first_duration(tr, c, acceleration) <= chatter_limit(tr))
+      c->accumulation = 0;
+    *any |= !isnan(c->accumulation);
+  }
+  return RIC_OK;
+}
+
+ric_status chatter_ahead(ric_trajectory *tr, ric_error *error) {
+  const ric_flow *f = tr->flow;
+  double dt = 1e-5;
+  bool any;
+  RIC_TRY(find_candidates(tr, &any, error));
+  if (!any)
     return RIC_OK;
-  RIC_TRY(gap_acceleration(tr, obstacle, &now, error));
-  *duration = 2 * rate / (-now * (1 - e));
-  if (!(now < 0 && *duration <= tol))
-    return RIC_OK;
-  RIC_TRY(acceleration_after(tr, obstacle, dt, &after, error));
-  RIC_TRY(acceleration_after(tr, obstacle, -dt, &before, error));
-  double jerk = (after - before) / (2 * dt);
-  *chatters = *duration * fmax(1, fabs(jerk) / -now) <= tol;
-  *duration *= 1 + 2 * jerk * rate / (3 * now * now * (1 - e));
+  RIC_TRY(add_jerks(tr, dt, 1 / (2 * dt), error));
+  RIC_TRY(add_jerks(tr, -dt, -1 / (2 * dt), error));
+  RIC_TRY(find_rates(tr, f->time, f->q, f->u, error));
+  for (size_t i = 0; i < tr->impact_count; i++) {
+    impact *c = &tr->impacts[i];
+    double acceleration;
+    if (isnan(c->accumulation))
+      continue;
+    RIC_TRY(read_acceleration(tr, f->time, f->q, f->u, c->obstacle, &acceleration, error));
+    c->accumulation = judge_series(tr, c, acceleration, c->accumulation);
+  }
   return RIC_OK;
 }
 
@@ -86,29 +166,80 @@ static ric_status make_room(ric_trajectory *tr, ric_error *error) {
   return tr->settling_capacity ? RIC_OK : ric_fail(error, RIC_ENOMEM, "no memory for %zu persistent contacts", count);
 }
 
-/* Gap and gap rate of a held contact at a coordinate are zero exactly. */
-static void hold(ric_trajectory *tr, size_t obstacle) {
+/* How the coordinates move at unit impulse: q' is linear in the speeds. In tr->rates. */
+static ric_status find_shift(ric_trajectory *tr, const contact_direction *d, ric_error *error) {
+  const ric_flow *f = tr->flow;
+  size_t n = tr->system->coordinates, m = tr->system->speeds;
+  double *u = tr->shifted + n;
+  RIC_TRY(find_rates(tr, f->time, f->q, f->u, error));
+  memcpy(tr->shifted, tr->rates, n * sizeof *tr->rates);
+  memcpy(u, f->u, m * sizeof *u);
+  for (size_t i = 0; i < d->count; i++)
+    u[d->first + i] += d->w[i];
+  RIC_TRY(find_rates(tr, f->time, f->q, u, error));
+  for (size_t i = 0; i < n; i++)
+    tr->rates[i] -= tr->shifted[i];
+  return RIC_OK;
+}
+
+ric_status contact_put_on(ric_trajectory *tr, size_t obstacle, ric_error *error) {
+  const ric_obstacle *o = tr->system->obstacles;
+  contact_direction d;
+  double inverse_mass;
+  if (o) {
+    tr->flow->q[o[obstacle].coordinate] = o[obstacle].position;
+    return RIC_OK;
+  }
+  if (!tr->system->model->direction)
+    return RIC_OK;
+  double gap = ric_system_gap(tr->system, obstacle, tr->flow->time, tr->flow->q);
+  RIC_TRY(impact_direction(&tr->law, tr->flow->time, tr->flow->q, obstacle, &d, &inverse_mass, error));
+  RIC_TRY(find_shift(tr, &d, error));
+  for (size_t i = 0; i < tr->system->coordinates; i++)
+    tr->flow->q[i] -= gap / inverse_mass * tr->rates[i];
+  return RIC_OK;
+}
+
+/* Gap and gap rate of a held contact are zero: exactly at a coordinate, to rounding otherwise. */
+static ric_status hold(ric_trajectory *tr, size_t obstacle, ric_error *error) {
+  const ric_system *s = tr->system;
+  contact_direction d;
+  double inverse_mass;
   flow_set_contact(tr->flow, obstacle, CONTACT_HELD);
   tr->locator.departure[obstacle] = DEPARTED;
-  if (tr->system->obstacles) {
-    const ric_obstacle *o = &tr->system->obstacles[obstacle];
-    tr->flow->q[o->coordinate] = o->position;
-    tr->flow->u[o->coordinate] = 0;
+  RIC_TRY(contact_put_on(tr, obstacle, error));
+  if (s->obstacles)
+    tr->flow->u[s->obstacles[obstacle].coordinate] = 0;
+  else if (s->model->direction) {
+    double rate = ric_system_gap_rate(s, obstacle, tr->flow->time, tr->flow->q, tr->flow->u);
+    RIC_TRY(impact_direction(&tr->law, tr->flow->time, tr->flow->q, obstacle, &d, &inverse_mass, error));
+    for (size_t i = 0; i < d.count; i++)
+      tr->flow->u[d.first + i] -= rate / inverse_mass * d.w[i];
   }
+  return RIC_OK;
+}
+
+ric_status contacts_keep_on(ric_trajectory *tr, bool *moved, ric_error *error) {
+  *moved = false;
+  for (size_t i = 0; i < tr->held.count && !tr->system->obstacles && tr->system->model->direction; i++) {
+    size_t obstacle = tr->held.items[i];
+    double gap = ric_system_gap(tr->system, obstacle, tr->flow->time, tr->flow->q);
+    if (fabs(gap) <= tr->locator.noise || tr->resting[obstacle] == RESTS_NOT)
+      continue;
+    RIC_TRY(hold(tr, obstacle, error));
+    *moved = true;
+  }
+  return RIC_OK;
 }
 
 static ric_status open_slowly(ric_trajectory *tr, size_t obstacle, ric_error *error) {
   flow_set_contact(tr->flow, obstacle, CONTACT_OPEN);
-  tr->locator.departure[obstacle] = DEPARTS_SLOWLY;
-  return index_list_add(&tr->departing, obstacle, error);
+  return contact_departs(tr, obstacle, DEPARTS_SLOWLY, error);
 }
 
 static ric_status conclude(ric_trajectory *tr, size_t obstacle, bool persists, ric_error *error) {
   bool rested = tr->resting[obstacle] != RESTS_NOT;
-  if (persists)
-    hold(tr, obstacle);
-  else
-    RIC_TRY(open_slowly(tr, obstacle, error));
+  RIC_TRY(persists ? hold(tr, obstacle, error) : open_slowly(tr, obstacle, error));
   if (persists && !rested) {
     tr->resting[obstacle] = RESTS;
     RIC_TRY(index_list_add(&tr->held, obstacle, error));

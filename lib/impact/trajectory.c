@@ -57,9 +57,10 @@ ric_status index_list_add(index_list *list, size_t item, ric_error *error) {
 static ric_status build(ric_trajectory *tr, ric_error *error) {
   const ric_system *s = tr->system;
   size_t states = s->coordinates + s->speeds, count = s->obstacle_count;
+  RIC_TRY(system_check_room(s, error));
   RIC_TRY(ric_flow_create(s, &tr->options.flow, &tr->flow, error));
   tr->noise = fmax(tr->options.rest_tol, 10 * tr->flow->options.tolerance);
-  RIC_TRY(locator_init(&tr->locator, tr->flow, tr->options.grazing_tol, tr->noise, error));
+  RIC_TRY(locator_init(&tr->locator, tr->flow, tr->options.grazing_tol, error));
   RIC_TRY(impact_solver_init(&tr->law, s, error));
   tr->resting = calloc(count ? count : 1, 1);
   tr->rates = malloc(2 * states * sizeof *tr->rates);
@@ -214,16 +215,18 @@ static ric_status advance(ric_trajectory *tr, double end, ric_error *error) {
   ric_flow *f = tr->flow;
   RIC_TRY(ric_flow_step(f, next_stop(tr, end), error));
   RIC_TRY(locator_scan(&tr->locator, f, tr->options.event_time_tol, error));
-  bool meets = tr->locator.roots.count > 0;
-  double x = meets ? tr->locator.first : 1, start = f->time, length = f->length;
+  bool meets = tr->locator.roots.count > 0, moved;
+  double x = meets ? tr->locator.first : tr->locator.horizon, start = f->time, length = f->length;
   show_pieces(tr, x);
   ric_flow_accept(f, x);
   show_grazes(tr, start, length);
   RIC_TRY(contacts_depart(tr, error));
+  RIC_TRY(contacts_keep_on(tr, &moved, error));
   if (meets) {
     RIC_TRY(contacts_meet(tr, error));
     count_event_time(tr);
-  }
+  } else if (moved)
+    RIC_TRY(flow_restart(f, error));
   show_coming(tr);
   return RIC_OK;
 }
@@ -291,8 +294,12 @@ ric_status ric_trajectory_run(ric_trajectory *tr, double end, const ric_observer
   run->time = tr->flow->time;
   run->energy_end = energy_now(tr);
   run->flow = counts_since(tr->flow, before);
-  if (status == RIC_ENUMERIC || status == RIC_ECALLBACK) {
-    conclude(tr, status == RIC_ENUMERIC ? RIC_RUN_BLOW_UP : RIC_RUN_CALLBACK_FAILED, local.message);
+  if (status == RIC_ENUMERIC || status == RIC_ECALLBACK || status == RIC_ELIMIT) {
+    conclude(tr,
+             status == RIC_ENUMERIC    ? RIC_RUN_BLOW_UP
+             : status == RIC_ECALLBACK ? RIC_RUN_CALLBACK_FAILED
+                                       : RIC_RUN_UNRESOLVED,
+             local.message);
     return RIC_OK;
   }
   if (status != RIC_OK && error)

@@ -30,7 +30,8 @@ struct ric_trajectory {
   locator locator;
   impact_solver law;
   bool started, fresh; /* fresh: contacts at the start have not been looked at yet */
-  double noise;        /* gaps and gap rates below it are zero */
+  double noise;        /* gaps and gap rates below it, relative to 1 + the size of the state, are zero */
+  double rate_noise;   /* the same for gap rates in the present state; for gaps: locator.noise */
 
   impact *impacts; /* contacts of one time */
   size_t impact_count, impact_capacity;
@@ -72,14 +73,28 @@ ric_status contacts_settle(ric_trajectory *tr, ric_error *error);
 void contact_release(ric_trajectory *tr, size_t obstacle);
 void contacts_forget_released(ric_trajectory *tr);
 
+/** Puts a contact onto its obstacle: takes away what errors of the flow have left of its gap, along the direction in
+ *  which an impulse moves it. First-order systems have none and stay. */
+ric_status contact_put_on(ric_trajectory *tr, size_t obstacle, ric_error *error);
+
+/** Puts held contacts of user systems back where they have drifted off. @param moved  whether any was */
+ric_status contacts_keep_on(ric_trajectory *tr, bool *moved, ric_error *error);
+
 /** Second derivative of a gap in the present state, with its own contact open. */
 ric_status gap_acceleration(ric_trajectory *tr, size_t obstacle, double *acceleration, ric_error *error);
 
-/** Whether the impacts of a contact that leaves with `rate` accumulate soon, and when: the time from now. */
-ric_status chatter_ahead(ric_trajectory *tr, size_t obstacle, double rate, bool *chatters, double *duration,
-                         ric_error *error);
+/** Finds the impacts of tr->impacts [count] whose series accumulates soon, and sets their `accumulation`: the time from
+ *  now, NaN for all others. */
+ric_status chatter_ahead(ric_trajectory *tr, ric_error *error);
 
-/** The threshold of gap rates in the present state. */
-double rest_rate(const ric_trajectory *tr);
+/** Measures the present state: sets rate_noise and locator.noise. */
+void contacts_measure(ric_trajectory *tr);
+
+/** Present value of the function whose root is a contact's next event: its gap, or minus its gap while it is pressed.
+ */
+double departure_value(const ric_trajectory *tr, size_t obstacle);
+
+/** A contact begins to depart from its present value. */
+ric_status contact_departs(ric_trajectory *tr, size_t obstacle, departure how, ric_error *error);
 
 #endif

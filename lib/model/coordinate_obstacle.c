@@ -4,7 +4,7 @@
 
 #include "system_model.h"
 
-/* Insertion of runs that are already in order costs O(count): obstacles are usually given so. */
+/* Merges halves, unless they are in order already: obstacles are usually given so. */
 static void sort_by_coordinate(const ric_obstacle *obstacles, size_t *order, size_t *spare, size_t count) {
   if (count < 2)
     return;
@@ -19,6 +19,27 @@ static void sort_by_coordinate(const ric_obstacle *obstacles, size_t *order, siz
         right == count || (left < half && obstacles[spare[left]].coordinate <= obstacles[spare[right]].coordinate);
     order[i] = from_left ? spare[left++] : spare[right++];
   }
+}
+
+/* Rigid obstacles of one coordinate stand next to each other in the order. */
+ric_status system_check_room(const ric_system *s, ric_error *error) {
+  double low = -INFINITY, high = INFINITY;
+  for (size_t k = 0; s->obstacles && k < s->obstacle_count; k++) {
+    const ric_obstacle *o = &s->obstacles[s->by_coordinate[k]];
+    if (k == 0 || o->coordinate != s->obstacles[s->by_coordinate[k - 1]].coordinate) {
+      low = -INFINITY;
+      high = INFINITY;
+    }
+    if (o->stiffness == INFINITY && o->side > 0)
+      low = fmax(low, o->position);
+    if (o->stiffness == INFINITY && o->side < 0)
+      high = fmin(high, o->position);
+    if (!(low < high))
+      return ric_fail(error, RIC_EINVAL,
+                      "coordinate %zu has a floor at %g and a wall at %g, expected room between them", o->coordinate,
+                      low, high);
+  }
+  return RIC_OK;
 }
 
 ric_status system_take_obstacles(ric_system *s, const ric_obstacle *obstacles, size_t count, ric_error *error) {

@@ -61,13 +61,16 @@ struct ric_system {
   ric_obstacle *obstacles;
   /** Indices of `obstacles` in order of coordinate [obstacle_count]; NULL for user systems. */
   size_t *by_coordinate;
-  /** Contacts never change each other's gap rates: impulses and forces follow contact by contact. True for diagonal
-   *  masses with obstacles at coordinates. */
+  /** Contacts on different coordinates never change each other's gap rates: impulses and forces follow contact by
+   *  contact. True for diagonal masses with obstacles at coordinates. */
   bool uncoupled;
 };
 
 /** Copies, checks and sorts the obstacles at coordinates of a system. */
 ric_status system_take_obstacles(ric_system *s, const ric_obstacle *obstacles, size_t count, ric_error *error);
+
+/** @returns RIC_EINVAL naming a coordinate whose rigid floor and wall leave no room between them. */
+ric_status system_check_room(const ric_system *s, ric_error *error);
 
 /** Functions of the table for obstacles at coordinates: shared by lattices and M-C-K systems. */
 const char *obstacle_gap(const ric_system *s, size_t obstacle, double t, const double *q, double *gap);

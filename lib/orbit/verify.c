@@ -54,7 +54,7 @@ static size_t first_of_obstacle(const ledger *l, size_t obstacle) {
   return low;
 }
 
-/* Every jump of the speeds must be promised; touches without one may be. */
+/* Every jump of the speeds must be promised. */
 static int see_event(const ric_event *event, void *user) {
   ledger *l = user;
   bool jumps = ric_event_jumps(event), promised = false;
@@ -66,7 +66,7 @@ static int see_event(const ric_event *event, void *user) {
       l->kept[i] = 1;
   }
   ric_verification *v = l->verification;
-  if (jumps && !promised && event->kind != RIC_EVENT_GRAZING && is_first(v, RIC_IMPACT_EXTRA))
+  if (jumps && !promised && is_first(v, RIC_IMPACT_EXTRA))
     snprintf(v->reason, sizeof v->reason, "obstacle %zu is hit at t = %.12g with gap rate %.3g, which is not promised",
              event->obstacle, event->time, event->gap_rate);
   return 0;
@@ -120,6 +120,17 @@ static void judge(const ric_trajectory *tr, const ledger *l, const ric_run *run,
              closure_tol);
 }
 
+static ric_status check_promise(const ric_promise *p, size_t i, double start, double period, size_t obstacles,
+                                ric_error *error) {
+  if (p->obstacle >= obstacles)
+    return ric_fail(error, RIC_EINVAL, "promises[%zu]: obstacle = %zu, expected less than %zu", i, p->obstacle,
+                    obstacles);
+  if (!(p->time > start && p->time < start + period))
+    return ric_fail(error, RIC_EINVAL, "promises[%zu]: time = %g, expected between %g and %g", i, p->time, start,
+                    start + period);
+  return RIC_OK;
+}
+
 static ric_status check_request(double period, const ric_verify_options *o, ric_error *error) {
   if (!(period > 0 && period < INFINITY))
     return ric_fail(error, RIC_EINVAL, "period = %g, expected a finite number > 0", period);
@@ -145,6 +156,8 @@ ric_status ric_verify(const ric_system *system, double start, const double *q, c
   ledger l = {0};
   *verification = (ric_verification){.result = RIC_VERIFIED, .closure_error = NAN};
   RIC_TRY(check_request(period, &o, error));
+  for (size_t i = 0; i < count; i++)
+    RIC_TRY(check_promise(&promises[i], i, start, period, ric_system_obstacles(system), error));
   ric_status status = ric_trajectory_create(system, &o.motion, &tr, error);
   if (status == RIC_OK)
     status = ledger_init(&l, promises, count, o.impact_time_tol * period, verification, error);

@@ -78,6 +78,26 @@ static void flows_agree_through_hertz_contacts(void **state) {
   assert_true(agree(500, 15, 1e6) > 100);
 }
 
+/* Hertz contacts that are touched with no speed: pushed in, pushed away, and in balance. */
+static void hertz_contacts_touched_at_rest_go_on(void **state) {
+  (void)state;
+  for (int k = 0; k < 6; k++) {
+    double place = (k % 3 - 1) * 0.5;
+    ric_lattice mass = ric_lattice_default(1, RIC_ENDS_FREE);
+    ric_obstacle floor = ric_obstacle_floor(0, place);
+    ric_trajectory_options options = ric_trajectory_options_default();
+    floor.stiffness = 100;
+    options.flow.method = k < 3 ? RIC_FLOW_TAYLOR : RIC_FLOW_CVODES;
+    ric_system *system = lattice_system(&mass, &floor, 1);
+    recorded r = record(system, &options, (double[]){place}, (double[]){0}, 10);
+    assert_int_equal(r.run.outcome, RIC_RUN_COMPLETED);
+    assert_true(r.count < 30);
+    assert_close(r.run.energy_end, r.run.energy_start, 1e-9);
+    recorded_clear(&r);
+    ric_system_destroy(&system);
+  }
+}
+
 /* Masses that share inertia, floors and walls, e = 0.9: coupled impulses, forces through the mass matrix. */
 static void flows_agree_on_coupled_masses(void **state) {
   (void)state;
@@ -115,6 +135,7 @@ int main(void) {
       cmocka_unit_test(flows_agree_through_impacts),
       cmocka_unit_test(flows_agree_through_hertz_contacts),
       cmocka_unit_test(flows_agree_on_coupled_masses),
+      cmocka_unit_test(hertz_contacts_touched_at_rest_go_on),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -7,24 +7,64 @@ static const double pi = 3.14159265358979323846;
 
 /* A mass that rests on a floor at 0.5, pressed by its spring with 0.5, under the force a sin(w t): it lifts off when
  * a sin(w t) = 0.5. */
+static recorded lift_off(double amplitude, double frequency, ric_flow_method method, double end) {
+  ric_lattice mass = ric_lattice_default(1, RIC_ENDS_FREE);
+  ric_obstacle floor = ric_obstacle_floor(0, 0.5);
+  ric_trajectory_options options = ric_trajectory_options_default();
+  mass.frequency = frequency;
+  mass.force_sin = &amplitude;
+  floor.restitution = 0.3;
+  options.flow.method = method;
+  ric_system *system = lattice_system(&mass, &floor, 1);
+  recorded r = record(system, &options, (double[]){0.5}, (double[]){0}, end);
+  ric_system_destroy(&system);
+  return r;
+}
+
+static void expect_lift_off(const recorded *r, double time, double tolerance) {
+  assert_int_equal(r->count, 2);
+  assert_int_equal(r->events[0].kind, RIC_EVENT_REST);
+  assert_true(r->events[0].time == 0);
+  assert_int_equal(r->events[1].kind, RIC_EVENT_RELEASE);
+  assert_close(r->events[1].time, time, tolerance);
+  assert_true(r->q[0] > 0.5 && r->u[0] > 0);
+}
+
 static void release_time_under_harmonic_force_is_the_closed_form(void **state) {
   (void)state;
-  for (int k = 0; k < 8; k++) {
-    double amplitude = 0.55 + 0.3 * k, frequency = 0.3 + 0.4 * k;
-    ric_lattice mass = ric_lattice_default(1, RIC_ENDS_FREE);
-    ric_obstacle floor = ric_obstacle_floor(0, 0.5);
-    mass.frequency = frequency;
-    mass.force_sin = &amplitude;
-    floor.restitution = 0.3;
-    ric_system *system = lattice_system(&mass, &floor, 1);
-    double lift = asin(0.5 / amplitude) / frequency;
+  for (int k = 0; k < 16; k++) {
+    double amplitude = 0.55 + 0.3 * (k % 8), frequency = 0.3 * pow(1.4, k), lift = asin(0.5 / amplitude) / frequency;
+    for (int method = RIC_FLOW_TAYLOR; method <= RIC_FLOW_CVODES; method++) {
+      recorded r = lift_off(amplitude, frequency, (ric_flow_method)method, lift + 0.1 / frequency);
+      expect_lift_off(&r, lift, (method == RIC_FLOW_TAYLOR ? 1e-14 : 1e-11) / frequency);
+      recorded_clear(&r);
+    }
+  }
+}
+
+/* The same in a user's words, where the force of the contact comes from differences. */
+static int shaken(double t, const double *q, const double *u, double *f, void *user) {
+  (void)u;
+  f[0] = -q[0] + 0.7 * sin(*(double *)user * t);
+  return 0;
+}
+
+static int over_half(double t, const double *q, size_t obstacle, double *h, void *user) {
+  (void)t, (void)obstacle, (void)user;
+  *h = q[0] - 0.5;
+  return 0;
+}
+
+static void release_time_of_a_user_system_is_the_closed_form(void **state) {
+  (void)state;
+  for (double frequency = 0.3; frequency < 40; frequency *= 1.7) {
+    ric_mechanical model = {
+        .coordinates = 1, .speeds = 1, .obstacles = 1, .force = shaken, .gap = over_half, .user = &frequency};
+    double lift = asin(0.5 / 0.7) / frequency;
+    ric_system *system = NULL;
+    assert_int_equal(ric_system_create_mechanical(&model, &system, NULL), RIC_OK);
     recorded r = record(system, NULL, (double[]){0.5}, (double[]){0}, lift + 0.1 / frequency);
-    assert_int_equal(r.count, 2);
-    assert_int_equal(r.events[0].kind, RIC_EVENT_REST);
-    assert_true(r.events[0].time == 0);
-    assert_int_equal(r.events[1].kind, RIC_EVENT_RELEASE);
-    assert_close(r.events[1].time, lift, 1e-14 / frequency);
-    assert_true(r.q[0] > 0.5 && r.u[0] > 0);
+    expect_lift_off(&r, lift, 1e-8);
     recorded_clear(&r);
     ric_system_destroy(&system);
   }
@@ -131,14 +171,55 @@ static void elastic_floor_holds_a_mass_put_down_on_it(void **state) {
   ric_system_destroy(&ball);
 }
 
+/* Far from the origin errors of the state are larger, and so is what counts as zero. */
+static void balls_come_to_rest_at_any_height(void **state) {
+  (void)state;
+  static const double weight[] = {-1};
+  for (double height = 1; height <= 1e4; height *= 10)
+    for (int method = RIC_FLOW_TAYLOR; method <= RIC_FLOW_CVODES; method++) {
+      ric_lattice ball = ric_lattice_default(1, RIC_ENDS_FREE);
+      ric_obstacle floor = ric_obstacle_floor(0, height);
+      ric_trajectory_options options = ric_trajectory_options_default();
+      ball.on_site = (ric_spring){0};
+      ball.force_cos = weight;
+      floor.restitution = 0.5;
+      options.flow.method = (ric_flow_method)method;
+      ric_system *system = lattice_system(&ball, &floor, 1);
+      recorded r = record(system, &options, (double[]){height + 0.5}, (double[]){0}, 20);
+      assert_int_equal(r.run.outcome, RIC_RUN_COMPLETED);
+      assert_true(r.count < 60 && recorded_first(&r, RIC_EVENT_REST) != NULL);
+      assert_true(r.q[0] == height && r.u[0] == 0);
+      recorded_clear(&r);
+      ric_system_destroy(&system);
+    }
+}
+
+/* A start that is below the floor by less than grazing_tol, with no speed: held, or on its way without fuss. */
+static void starts_a_little_below_the_floor_go_on(void **state) {
+  (void)state;
+  for (int k = 0; k < 3; k++) {
+    ric_lattice mass = ric_lattice_default(1, RIC_ENDS_FREE);
+    ric_obstacle floor = ric_obstacle_floor(0, k == 0 ? 0.5 : k == 1 ? -0.5 : 0);
+    ric_system *system = lattice_system(&mass, &floor, 1);
+    recorded r = record(system, NULL, (double[]){floor.position - 1e-12}, (double[]){0}, 10);
+    assert_int_equal(r.run.outcome, RIC_RUN_COMPLETED);
+    assert_true(r.count < 10);
+    recorded_clear(&r);
+    ric_system_destroy(&system);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(release_time_under_harmonic_force_is_the_closed_form),
+      cmocka_unit_test(release_time_of_a_user_system_is_the_closed_form),
       cmocka_unit_test(released_mass_moves_freely),
       cmocka_unit_test(chain_with_losses_comes_to_rest),
       cmocka_unit_test(plastic_impacts_stick_at_once),
       cmocka_unit_test(neighbour_lifts_a_resting_mass),
       cmocka_unit_test(elastic_floor_holds_a_mass_put_down_on_it),
+      cmocka_unit_test(balls_come_to_rest_at_any_height),
+      cmocka_unit_test(starts_a_little_below_the_floor_go_on),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

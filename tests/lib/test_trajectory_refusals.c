@@ -111,7 +111,19 @@ static void options_are_checked(void **state) {
   ric_system_destroy(&system);
 }
 
-/* q'' = q^3: infinite in finite time. */
+static void floor_and_wall_must_leave_room(void **state) {
+  (void)state;
+  ric_error error;
+  ric_lattice pair = ric_lattice_default(2, RIC_ENDS_FREE);
+  ric_obstacle sides[2] = {ric_obstacle_wall(1, 0.25), ric_obstacle_floor(1, 0.25)};
+  ric_system *system = lattice_system(&pair, sides, 2);
+  ric_trajectory *trajectory = NULL;
+  expect(ric_trajectory_create(system, NULL, &trajectory, &error), RIC_EINVAL, &error,
+         "coordinate 1 has a floor at 0.25 and a wall at 0.25, expected room between them");
+  ric_system_destroy(&system);
+}
+
+/* q'' = 2 q^3: infinite in finite time. */
 static void blow_up_is_an_outcome_that_keeps_the_state(void **state) {
   (void)state;
   ric_lattice mass = ric_lattice_default(1, RIC_ENDS_FREE);
@@ -196,6 +208,7 @@ int main(void) {
       cmocka_unit_test(masses_and_springs_are_checked),
       cmocka_unit_test(starts_are_checked),
       cmocka_unit_test(options_are_checked),
+      cmocka_unit_test(floor_and_wall_must_leave_room),
       cmocka_unit_test(blow_up_is_an_outcome_that_keeps_the_state),
       cmocka_unit_test(failing_callbacks_are_an_outcome_that_keeps_the_state),
       cmocka_unit_test(poll_stops_a_run_which_can_go_on),

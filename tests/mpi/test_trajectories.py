@@ -23,7 +23,7 @@ def durations(points, low, high):
     return f"{{parameter: time.duration, from: {low}, to: {high}, points: {points}, scale: log}}"
 
 
-SLOW = trajectory(100, start=speeds(100), time="samples: 11", sweep=durations(TASKS, 20, 200))  # some 50 ms a task
+SLOW = trajectory(100, start=speeds(100), time="samples: 11", sweep=durations(TASKS, 10, 100))  # some 30 ms a task
 
 
 def run_on(ricochet, folder, ranks, text):

@@ -1,8 +1,8 @@
 /* Events of a motion with obstacles: what happened, where, when, how hard.
  *
  *   transversal   an impact: the gap vanishes with a rate below zero
- *   grazing       a gap whose minimum lies within grazing_tol of zero. Above zero nothing jumps; below it the impact
- *                 law was applied to the small rate. `depth` is the minimum of the motion without the obstacle
+ *   grazing       a gap whose minimum lies within grazing_tol of zero, `depth`. Above zero, and where the rate is zero
+ *                 to rounding, nothing jumps; below it the impact law was applied to the small rate
  *   simultaneous  an impact within event_time_tol of another that does not couple with it: order does not matter
  *   coupled       an impact whose impulse depends on those of other contacts closed at that time (2.9); in sequence, in
  *                 another order, the outcome would differ
@@ -48,7 +48,8 @@ typedef struct ric_event {
   double gap_rate;     /* just before, <= 0 at impacts; 0 at grazing above zero, rest and release */
   double gap_rate_end; /* just after */
   double impulse;      /* along the gap's gradient, >= 0; NaN for impact maps of first-order systems */
-  double energy_loss;  /* of the impact, shared out over the contacts of one time; NaN where energy is not known */
+  double energy_loss;  /* that the impact took from the system, shared out over the contacts of one time; NaN where
+                          energy is not known */
   double depth;        /* grazing: the minimum of the gap; NaN for other kinds */
   double accumulation; /* chatter: when the impacts accumulate; NaN for other kinds */
 } ric_event;

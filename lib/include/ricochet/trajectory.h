@@ -19,6 +19,7 @@
   X(RIC_RUN_COMPLETED, "completed")     /* reached the end */                                                          \
   X(RIC_RUN_EVENT_LIMIT, "event_limit") /* events at more times per unit of time than allowed */                       \
   X(RIC_RUN_BLOW_UP, "blow_up")         /* the state grows beyond bounds, or steps shrink to nothing */                \
+  X(RIC_RUN_UNRESOLVED, "unresolved")   /* a gap or a contact force varies too fast for the steps */                   \
   X(RIC_RUN_CALLBACK_FAILED, "callback_failed")                                                                        \
   X(RIC_RUN_ENDED, "ended") /* the observer asked for the end */
 
@@ -37,7 +38,8 @@ RIC_API const char *ric_run_outcome_name(ric_run_outcome outcome);
 typedef struct ric_observer {
   /** A piece of the motion, valid for x in [0, end], 0 < end <= 1; pieces of one step follow each other. */
   int (*segment)(const ric_segment *piece, double end, void *user);
-  /** Events; those of one time in order of their obstacles. */
+  /** Events; of those of one time, switches and releases come first, then impacts, then rests, each in order of their
+   *  obstacles. */
   int (*event)(const ric_event *event, void *user);
   void *user;
 } ric_observer;
@@ -48,7 +50,8 @@ typedef struct ric_trajectory_options {
   double grazing_tol;     /* 1e-10: minima of a gap within it of zero are grazing. Absolute */
   double chatter_tol;     /* 1e-4: for e < 1, a series of impacts that will have accumulated within this time (or within
                              this part of the time in which the gap's acceleration changes by its own size, when that is
-                             shorter) is summed up. What is left out is about its third power. 0: never */
+                             shorter) is summed up. What is left out is about its third power. At least the
+                            fourth root of the flow's tolerance: beyond, digits are lost. 0: never */
   double rest_tol;        /* 1e-13 (at least ten times the flow's tolerance): gap rates below it, relative to 1 + the
                              largest speed, are zero, and so are gaps below it */
   double events_per_time; /* 1e5: events at more times than this within a unit of time end the run */
@@ -71,7 +74,8 @@ typedef struct ric_run {
 typedef struct ric_trajectory ric_trajectory;
 
 /** @param system  borrowed, must outlive the trajectory
- *  @param options  copied, NULL for the defaults; checked here */
+ *  @param options  copied, NULL for the defaults; checked here
+ *  @returns RIC_EINVAL, also for a coordinate whose rigid floor and wall leave no room; RIC_ENOMEM. */
 RIC_API ric_status ric_trajectory_create(const ric_system *system, const ric_trajectory_options *options,
                                          ric_trajectory **trajectory, ric_error *error);
 RIC_API void ric_trajectory_destroy(ric_trajectory **trajectory);

@@ -17,7 +17,9 @@
  *
  * Callbacks return 0, or non-zero to end the run with the outcome `callback_failed`; values that are not finite do the
  * same. They are called in any order of times. Optional callbacks may be NULL: derivatives then come from central
- * differences (about ten digits), which costs digits of impact speeds where gaps are curved. */
+ * differences, about ten digits where gaps change over lengths and times of order one (steps of about 1e-3; so do the
+ * derivatives of gap rates that persistent contacts and chatter need, always): make systems dimensionless with that in
+ * mind. It costs digits of impact speeds where gaps are curved. */
 #ifndef RICOCHET_USER_SYSTEM_H
 #define RICOCHET_USER_SYSTEM_H
 

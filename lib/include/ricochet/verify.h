@@ -56,7 +56,8 @@ RIC_API ric_verify_options ric_verify_options_default(void);
  *  @param q, u  [n], [m] state there
  *  @param promises  [count] in order of time
  *  @param options  NULL for the defaults
- *  @returns RIC_OK with a result; errors of ric_trajectory_create and RIC_ESTOPPED. */
+ *  @returns RIC_OK with a result; RIC_EINVAL for a period that is not positive, promises of unknown obstacles or
+ * outside the period; errors of ric_trajectory_create and RIC_ESTOPPED. */
 RIC_API ric_status ric_verify(const ric_system *system, double start, const double *q, const double *u, double period,
                               const ric_promise *promises, size_t count, const ric_verify_options *options,
                               ric_verification *verification, ric_error *error);
