@@ -199,21 +199,24 @@ ric_status impact_apply(impact_solver *solver, double t, double *q, double *u, i
   return RIC_OK;
 }
 
-ric_status impact_stick(impact_solver *solver, double t, double *q, double *u, impact *contact, ric_error *error) {
-  double left = contact->rate_end;
+ric_status impact_stick(impact_solver *solver, double t, double *q, double *u, impact *contact, double restitution,
+                        ric_error *error) {
+  double left = contact->rate_end, part = restitution / (1 + restitution);
   if (solver->system->model->direction) {
     RIC_TRY(find_direction(solver, 0, contact->obstacle, t, q, error));
-    push(&solver->directions[0], -left / contact->inverse_mass, u);
-    contact->impulse -= left / contact->inverse_mass;
-    contact->rate_end = 0;
+    push(&solver->directions[0], -part * contact->impulse, u);
+    contact->impulse -= part * contact->impulse;
+    contact->rate_end -= part * (contact->rate_end - contact->rate);
+    if (contact->rate < 0)
+      contact->rate_end = 0; /* the hit, but for rounding */
     contact->loss = work_lost(contact, solver->directions[0].offset);
   } else { /* the gap rate is zero between the states before and after */
     double back = left / (left - contact->rate), energy = ric_system_energy(solver->system, t, q, NULL);
     for (size_t i = 0; i < solver->system->coordinates; i++)
       q[i] -= back * (q[i] - solver->before[i]);
     contact->loss += energy - ric_system_energy(solver->system, t, q, NULL);
+    contact->rate_end = 0;
   }
-  contact->rate_end = 0;
   return RIC_OK;
 }
 

@@ -43,9 +43,12 @@ void impact_solver_clear(impact_solver *solver);
 ric_status impact_apply(impact_solver *solver, double t, double *q, double *u, impact *contacts, size_t count,
                         ric_error *error);
 
-/** After impact_apply: takes the rate that is left of one contact as well, so that it ends at zero. The contact must
- * not be coupled; for first-order systems it must have been the only one. */
-ric_status impact_stick(impact_solver *solver, double t, double *q, double *u, impact *contact, ric_error *error);
+/** After impact_apply for one hit, alone or with persistent contacts that it coupled to: takes away what its
+ * restitution has added to the impulse of `contact`, so that the hit's rate ends at zero. By (2.9) and Moreau's form,
+ * impulses are proportional to 1 + e. Call it for every contact of the list.
+ *  @param restitution  of the hit */
+ric_status impact_stick(impact_solver *solver, double t, double *q, double *u, impact *contact, double restitution,
+                        ric_error *error);
 
 /** Direction of one contact, in the solver's storage until its next call; not for first-order systems.
  *  @param inverse_mass  g^T M^-1 g */

@@ -73,10 +73,20 @@ static ric_status depth_of(ric_trajectory *tr, size_t obstacle, double rate, dou
   return RIC_OK;
 }
 
-/* An impact's aftermath: leave, settle, or be summed up with those that would follow. */
-static ric_status aftermath(ric_trajectory *tr, impact *c, ric_error *error) {
-  if (!isnan(c->accumulation))
-    RIC_TRY(impact_stick(&tr->law, tr->flow->time, tr->flow->q, tr->flow->u, c, error));
+/* Takes out of the impulses what the series of impacts that is summed up would have given back. */
+static ric_status sum_up(ric_trajectory *tr, size_t hits, ric_error *error) {
+  bool all = hits == 1 && !isnan(tr->impacts[0].accumulation); /* with the persistent contacts that share in it */
+  for (size_t i = 0; i < tr->impact_count; i++) {
+    impact *c = &tr->impacts[i];
+    double e = tr->system->model->restitution(tr->system, all ? tr->impacts[0].obstacle : c->obstacle);
+    if (all || !isnan(c->accumulation))
+      RIC_TRY(impact_stick(&tr->law, tr->flow->time, tr->flow->q, tr->flow->u, c, e, error));
+  }
+  return RIC_OK;
+}
+
+/* An impact's aftermath: leave or settle. */
+static ric_status aftermath(ric_trajectory *tr, const impact *c, ric_error *error) {
   if (c->rate_end > tr->rate_noise)
     return contact_departs(tr, c->obstacle, DEPARTS_FAST, error);
   return index_list_add(&tr->settling, c->obstacle, error);
@@ -97,10 +107,10 @@ static ric_status will_rest(ric_trajectory *tr, size_t obstacle, double time, ri
 }
 
 static ric_event_kind kind_of(const ric_trajectory *tr, const impact *c, size_t hits, double depth) {
-  if (c->coupled)
-    return RIC_EVENT_COUPLED;
   if (!isnan(c->accumulation))
     return RIC_EVENT_CHATTER;
+  if (c->coupled)
+    return RIC_EVENT_COUPLED;
   if (depth >= -tr->options.grazing_tol)
     return RIC_EVENT_GRAZING;
   return hits > 1 ? RIC_EVENT_SIMULTANEOUS : RIC_EVENT_TRANSVERSAL;
@@ -141,17 +151,33 @@ static ric_status collide(ric_trajectory *tr, size_t hits, ric_error *error) {
   if (hits == 1)
     RIC_TRY(depth_of(tr, tr->impacts[0].obstacle, rate_now(tr, tr->impacts[0].obstacle), &depth, error));
   RIC_TRY(impact_apply(&tr->law, f->time, f->q, f->u, tr->impacts, tr->impact_count, error));
-  RIC_TRY(chatter_ahead(tr, error));
+  RIC_TRY(chatter_ahead(tr, hits, error));
+  RIC_TRY(sum_up(tr, hits, error));
   for (size_t i = 0; i < tr->impact_count; i++)
     RIC_TRY(conclude_impact(tr, &tr->impacts[i], hits, i < hits ? depth : -INFINITY, error));
+  return RIC_OK;
+}
+
+/* Whether a contact comes in no faster than it would fall through the noise of its gap: it has been pressed on already,
+ * and an impact would only hand the noise from contact to contact. */
+static ric_status is_pressed_on(ric_trajectory *tr, size_t obstacle, double rate, bool *pressed, ric_error *error) {
+  double acceleration, noise = tr->locator.noise;
+  *pressed = false;
+  if (rate * rate > 1e4 * noise) /* for every acceleration below 5e3 */
+    return RIC_OK;
+  RIC_TRY(gap_acceleration(tr, obstacle, &acceleration, error));
+  *pressed = rate * rate <= -2 * acceleration * noise;
   return RIC_OK;
 }
 
 /* A root of an open rigid contact: an impact, a touch with rate zero, or noise on its way out. */
 static ric_status sort_root(ric_trajectory *tr, size_t obstacle, ric_error *error) {
   double rate = rate_now(tr, obstacle);
+  bool pressed = false;
   if (rate < -tr->rate_noise)
-    return add_impact(tr, obstacle, error);
+    RIC_TRY(is_pressed_on(tr, obstacle, rate, &pressed, error));
+  if (rate < -tr->rate_noise)
+    return pressed ? index_list_add(&tr->settling, obstacle, error) : add_impact(tr, obstacle, error);
   ric_event event = event_of(tr, RIC_EVENT_GRAZING, obstacle);
   event.gap_rate = event.gap_rate_end = rate;
   event.depth = gap_now(tr, obstacle);

@@ -28,9 +28,10 @@ double departure_value(const ric_trajectory *tr, size_t obstacle) {
 }
 
 ric_status contact_departs(ric_trajectory *tr, size_t obstacle, departure how, ric_error *error) {
+  bool listed = tr->locator.departure[obstacle] != DEPARTED;
   tr->locator.departure[obstacle] = (unsigned char)how;
   tr->locator.base[obstacle] = departure_value(tr, obstacle);
-  return index_list_add(&tr->departing, obstacle, error);
+  return listed ? RIC_OK : index_list_add(&tr->departing, obstacle, error);
 }
 
 /* Rates of the present state into tr->rates. */
@@ -82,8 +83,9 @@ static ric_status add_jerks(ric_trajectory *tr, double dt, double scale, ric_err
   return RIC_OK;
 }
 
-static bool may_chatter(const ric_trajectory *tr, const impact *c) {
-  bool alone = !c->coupled && (tr->system->model->direction || tr->impact_count == 1);
+/* A hit among persistent contacts, or hits that do not couple. */
+static bool may_chatter(const ric_trajectory *tr, const impact *c, size_t hits) {
+  bool alone = hits == 1 || (!c->coupled && tr->system->model->direction);
   return alone && c->rate < -tr->rate_noise && c->rate_end > tr->rate_noise && tr->options.chatter_tol > 0 &&
          tr->system->model->restitution(tr->system, c->obstacle) < 1;
 }
@@ -112,7 +114,7 @@ static double judge_series(const ric_trajectory *tr, const impact *c, double acc
 }
 
 /* Those whose series is short under the present acceleration; `accumulation` is 0 for them, ready for the jerk. */
-static ric_status find_candidates(ric_trajectory *tr, bool *any, ric_error *error) {
+static ric_status find_candidates(ric_trajectory *tr, size_t hits, bool *any, ric_error *error) {
   const ric_flow *f = tr->flow;
   bool asked = false;
   *any = false;
@@ -120,7 +122,7 @@ static ric_status find_candidates(ric_trajectory *tr, bool *any, ric_error *erro
     impact *c = &tr->impacts[i];
     double acceleration;
     c->accumulation = NAN;
-    if (!may_chatter(tr, c))
+    if (!may_chatter(tr, c, hits))
       continue;
     if (!asked)
       RIC_TRY(find_rates(tr, f->time, f->q, f->u, error));
@@ -133,11 +135,11 @@ static ric_status find_candidates(ric_trajectory *tr, bool *any, ric_error *erro
   return RIC_OK;
 }
 
-ric_status chatter_ahead(ric_trajectory *tr, ric_error *error) {
+ric_status chatter_ahead(ric_trajectory *tr, size_t hits, ric_error *error) {
   const ric_flow *f = tr->flow;
   double dt = 1e-5;
   bool any;
-  RIC_TRY(find_candidates(tr, &any, error));
+  RIC_TRY(find_candidates(tr, hits, &any, error));
   if (!any)
     return RIC_OK;
   RIC_TRY(add_jerks(tr, dt, 1 / (2 * dt), error));

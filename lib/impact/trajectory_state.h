@@ -84,8 +84,8 @@ ric_status contacts_keep_on(ric_trajectory *tr, bool *moved, ric_error *error);
 ric_status gap_acceleration(ric_trajectory *tr, size_t obstacle, double *acceleration, ric_error *error);
 
 /** Finds the impacts of tr->impacts [count] whose series accumulates soon, and sets their `accumulation`: the time from
- *  now, NaN for all others. */
-ric_status chatter_ahead(ric_trajectory *tr, ric_error *error);
+ *  now, NaN for all others. @param hits  how many of them are new, the first ones; the others persist */
+ric_status chatter_ahead(ric_trajectory *tr, size_t hits, ric_error *error);
 
 /** Measures the present state: sets rate_noise and locator.noise. */
 void contacts_measure(ric_trajectory *tr);
