@@ -2,6 +2,8 @@
  * error can hide". */
 #include "support.h"
 
+#include <stdbool.h>
+
 #include "recorded.h"
 #include "scenario/random_source.h"
 
@@ -27,14 +29,19 @@ typedef struct bench {
   ric_trajectory *trajectory;
 } bench;
 
-static bench bench_create(ric_flow_method method, double tolerance) {
+static bench bench_create(ric_flow_method method, double tolerance, bool as_matrices) {
   bench b = {0};
+  const double one = 1;
+  const ric_mck matrices = {.coordinates = 1, .mass.values = &one, .stiffness.values = &one};
   ric_lattice mass = ric_lattice_default(1, RIC_ENDS_FREE);
   ric_obstacle floor = ric_obstacle_floor(0, -1);
   ric_trajectory_options options = ric_trajectory_options_default();
   options.flow.method = method;
   options.flow.tolerance = tolerance;
-  b.system = lattice_system(&mass, &floor, 1);
+  if (as_matrices)
+    assert_int_equal(ric_system_create_mck(&matrices, &floor, 1, &b.system, NULL), RIC_OK);
+  else
+    b.system = lattice_system(&mass, &floor, 1);
   assert_int_equal(ric_trajectory_create(b.system, &options, &b.trajectory, NULL), RIC_OK);
   return b;
 }
@@ -64,12 +71,12 @@ static double cvodes_floor(double amplitude, double steps, double tolerance) {
   return 2 * sqrt(2) * (steps + 1) * tolerance * (1 + amplitude);
 }
 
-static void none_missed(ric_flow_method method, double tolerance, size_t contacts, double earliest) {
+static void none_missed(ric_flow_method method, double tolerance, bool as_matrices, size_t contacts) {
   random_source source = {.state = 1997};
-  bench b = bench_create(method, tolerance);
+  bench b = bench_create(method, tolerance, as_matrices);
   size_t missed = 0, below = 0;
   for (size_t i = 0; i < contacts; i++) {
-    double depth = pow(10, random_uniform(&source, -12, -2)), phase = random_uniform(&source, earliest, pi);
+    double depth = pow(10, random_uniform(&source, -12, -2)), phase = random_uniform(&source, 0.2, pi);
     unsigned long long steps;
     outcome o = pass(&b, depth, phase, &steps);
     double floor = method == RIC_FLOW_CVODES ? cvodes_floor(1 + depth, (double)steps, tolerance)
@@ -88,24 +95,29 @@ static void none_missed(ric_flow_method method, double tolerance, size_t contact
 
 static void taylor_misses_none_above_its_floor(void **state) {
   (void)state;
-  none_missed(RIC_FLOW_TAYLOR, 1e-16, CONTACTS, 0.2);
+  none_missed(RIC_FLOW_TAYLOR, 1e-16, false, CONTACTS);
+}
+
+static void taylor_of_matrices_misses_none_above_its_floor(void **state) {
+  (void)state;
+  none_missed(RIC_FLOW_TAYLOR, 1e-16, true, CONTACTS);
 }
 
 static void cvodes_misses_none_above_its_floor(void **state) {
   (void)state;
-  none_missed(RIC_FLOW_CVODES, 1e-12, CONTACTS, 0.2);
+  none_missed(RIC_FLOW_CVODES, 1e-12, false, CONTACTS);
 }
 
 static void cvodes_at_a_loose_tolerance_misses_none_above_its_floor(void **state) {
   (void)state;
-  none_missed(RIC_FLOW_CVODES, 1e-8, CONTACTS / 20, 0.2);
+  none_missed(RIC_FLOW_CVODES, 1e-8, false, CONTACTS / 20);
 }
 
 /* Minima within grazing_tol above zero are reported with their value, and nothing jumps. */
 static void near_misses_are_reported_with_their_clearance(void **state) {
   (void)state;
   random_source source = {.state = 7};
-  bench b = bench_create(RIC_FLOW_TAYLOR, 1e-16);
+  bench b = bench_create(RIC_FLOW_TAYLOR, 1e-16, false);
   for (int i = 0; i < 20000; i++) {
     double clearance = pow(10, random_uniform(&source, -12, -8)), phase = random_uniform(&source, 0.2, pi);
     unsigned long long steps;
@@ -127,7 +139,7 @@ static void near_misses_are_reported_with_their_clearance(void **state) {
 /* Shallow impacts are labelled grazing with the depth that the motion without the floor has. */
 static void shallow_impacts_are_labelled_grazing(void **state) {
   (void)state;
-  bench b = bench_create(RIC_FLOW_TAYLOR, 1e-16);
+  bench b = bench_create(RIC_FLOW_TAYLOR, 1e-16, false);
   for (int i = 0; i < 200; i++) {
     double depth = 1e-12 * pow(10, i / 50.0), phase = 0.3 + 0.01 * i;
     unsigned long long steps;
@@ -146,6 +158,7 @@ static void shallow_impacts_are_labelled_grazing(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(taylor_misses_none_above_its_floor),
+      cmocka_unit_test(taylor_of_matrices_misses_none_above_its_floor),
       cmocka_unit_test(near_misses_are_reported_with_their_clearance),
       cmocka_unit_test(shallow_impacts_are_labelled_grazing),
       cmocka_unit_test(cvodes_misses_none_above_its_floor),
