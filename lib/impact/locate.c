@@ -2,6 +2,8 @@
 
 #include <stdlib.h>
 
+#include "growing.h"
+
 enum {
   MOST_PARTS = 1 << 17, /* into which a step is cut where a function is hard to interpolate */
   HALVINGS = 40
@@ -31,14 +33,10 @@ void locator_clear(locator *l) {
 }
 
 static ric_status add_hit(hit_list *list, hit h, ric_error *error) {
-  if (list->count == list->capacity) {
-    size_t capacity = list->capacity ? 2 * list->capacity : 16;
-    hit *hits = realloc(list->hits, capacity * sizeof *hits);
-    if (!hits)
-      return ric_fail(error, RIC_ENOMEM, "no memory for %zu events at one time", capacity);
-    list->hits = hits;
-    list->capacity = capacity;
-  }
+  hit *hits = growing_room(list->hits, list->count, &list->capacity, sizeof *hits);
+  if (!hits)
+    return ric_fail(error, RIC_ENOMEM, "no memory for more than %zu events at one time", list->count);
+  list->hits = hits;
   list->hits[list->count++] = h;
   return RIC_OK;
 }

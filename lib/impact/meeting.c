@@ -1,17 +1,12 @@
 /* What happens when contacts meet: at the start of a run, and at the first roots of a step. */
-#include <stdlib.h>
-
+#include "growing.h"
 #include "trajectory_state.h"
 
 static ric_status add_impact(ric_trajectory *tr, size_t obstacle, ric_error *error) {
-  if (tr->impact_count == tr->impact_capacity) {
-    size_t capacity = tr->impact_capacity ? 2 * tr->impact_capacity : 16;
-    impact *impacts = realloc(tr->impacts, capacity * sizeof *impacts);
-    if (!impacts)
-      return ric_fail(error, RIC_ENOMEM, "no memory for %zu impacts at one time", capacity);
-    tr->impacts = impacts;
-    tr->impact_capacity = capacity;
-  }
+  impact *impacts = growing_room(tr->impacts, tr->impact_count, &tr->impact_capacity, sizeof *impacts);
+  if (!impacts)
+    return ric_fail(error, RIC_ENOMEM, "no memory for more than %zu impacts at one time", tr->impact_count);
+  tr->impacts = impacts;
   tr->impacts[tr->impact_count++] = (impact){.obstacle = obstacle};
   return RIC_OK;
 }
@@ -93,14 +88,10 @@ static ric_status aftermath(ric_trajectory *tr, const impact *c, ric_error *erro
 }
 
 static ric_status will_rest(ric_trajectory *tr, size_t obstacle, double time, ric_error *error) {
-  if (tr->coming_count == tr->coming_capacity) {
-    size_t capacity = tr->coming_capacity ? 2 * tr->coming_capacity : 16;
-    coming_rest *coming = realloc(tr->coming, capacity * sizeof *coming);
-    if (!coming)
-      return ric_fail(error, RIC_ENOMEM, "no memory for %zu contacts that come to rest", capacity);
-    tr->coming = coming;
-    tr->coming_capacity = capacity;
-  }
+  coming_rest *coming = growing_room(tr->coming, tr->coming_count, &tr->coming_capacity, sizeof *coming);
+  if (!coming)
+    return ric_fail(error, RIC_ENOMEM, "no memory for more than %zu contacts that come to rest", tr->coming_count);
+  tr->coming = coming;
   tr->coming[tr->coming_count++] = (coming_rest){.time = time, .obstacle = obstacle};
   tr->resting[obstacle] = COMES_TO_REST;
   return index_list_add(&tr->held, obstacle, error);

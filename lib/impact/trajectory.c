@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "growing.h"
 #include "trajectory_state.h"
 
 const char *ric_run_outcome_name(ric_run_outcome outcome) {
@@ -42,14 +43,10 @@ static ric_status check_options(const ric_trajectory_options *o, ric_error *erro
 }
 
 ric_status index_list_add(index_list *list, size_t item, ric_error *error) {
-  if (list->count == list->capacity) {
-    size_t capacity = list->capacity ? 2 * list->capacity : 16;
-    size_t *items = realloc(list->items, capacity * sizeof *items);
-    if (!items)
-      return ric_fail(error, RIC_ENOMEM, "no memory for a list of %zu contacts", capacity);
-    list->items = items;
-    list->capacity = capacity;
-  }
+  size_t *items = growing_room(list->items, list->count, &list->capacity, sizeof *items);
+  if (!items)
+    return ric_fail(error, RIC_ENOMEM, "no memory for a list of more than %zu contacts", list->count);
+  list->items = items;
   list->items[list->count++] = item;
   return RIC_OK;
 }
