@@ -3,6 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "model/cholesky.h"
+
 static const double coupling_tol = 1e-13; /* of g_i^T M^-1 g_j against the diagonal: below it, rounding */
 
 ric_status impact_solver_init(impact_solver *solver, const ric_system *system, ric_error *error) {
@@ -97,8 +99,8 @@ static ric_status apply_alone(impact_solver *s, double t, const double *q, doubl
   double e = s->system->model->restitution(s->system, c->obstacle);
   RIC_TRY(find_direction(s, 0, c->obstacle, t, q, error));
   RIC_TRY(read_rate(s, t, q, u, c->obstacle, &c->rate, error));
-  c->inverse_mass = product(&s->directions[0], &s->directions[0]);
-  c->impulse = c->rate < 0 ? -(1 + e) * c->rate / c->inverse_mass : 0;
+  double inverse_mass = product(&s->directions[0], &s->directions[0]);
+  c->impulse = c->rate < 0 ? -(1 + e) * c->rate / inverse_mass : 0;
   c->rate_end = c->rate < 0 ? -e * c->rate : c->rate;
   c->loss = work_lost(c, s->directions[0].offset);
   c->coupled = false;
@@ -143,7 +145,6 @@ static ric_status apply_together(impact_solver *s, double t, const double *q, do
     c->rate_end = c->rate;
     for (size_t j = 0; j < count; j++)
       c->rate_end += s->matrix[i * count + j] * s->solution[j];
-    c->inverse_mass = s->matrix[i * count + i];
     c->loss = work_lost(c, s->directions[i].offset);
     c->coupled = couples(s->matrix, count, i);
     push(&s->directions[i], c->impulse, u);
@@ -158,7 +159,6 @@ static ric_status apply_map(impact_solver *s, double t, double *x, impact *c, ri
   double energy_before = ric_system_energy(system, t, x, NULL);
   RIC_TRY(read_rate(s, t, x, NULL, c->obstacle, &c->rate, error));
   c->rate_end = c->rate;
-  c->inverse_mass = NAN;
   c->impulse = c->rate < 0 ? NAN : 0;
   c->loss = 0;
   c->coupled = false;
@@ -217,6 +217,35 @@ ric_status impact_stick(impact_solver *solver, double t, double *q, double *u, i
     contact->loss += energy - ric_system_energy(solver->system, t, q, NULL);
     contact->rate_end = 0;
   }
+  return RIC_OK;
+}
+
+/* The equations A p = -h' of contacts [count] whose directions follow each other in the solver. */
+static ric_status halt_together(impact_solver *s, double t, const double *q, double *u, const size_t *obstacles,
+                                size_t count, double *loss, ric_error *error) {
+  for (size_t i = 0; i < count; i++) {
+    RIC_TRY(find_direction(s, i, obstacles[i], t, q, error));
+    RIC_TRY(read_rate(s, t, q, u, obstacles[i], &s->rhs[i], error));
+    s->solution[i] = -s->rhs[i];
+  }
+  fill_matrix(s, count);
+  cholesky_factor_semidefinite(s->matrix, count);
+  cholesky_solve(s->matrix, count, s->solution);
+  for (size_t i = 0; i < count; i++) {
+    impact c = {.rate = s->rhs[i], .impulse = s->solution[i]};
+    *loss += work_lost(&c, s->directions[i].offset);
+    push(&s->directions[i], c.impulse, u);
+  }
+  return RIC_OK;
+}
+
+ric_status impact_halt(impact_solver *solver, double t, const double *q, double *u, const size_t *obstacles,
+                       size_t count, double *loss, ric_error *error) {
+  size_t together = solver->system->uncoupled ? 1 : count;
+  *loss = 0;
+  RIC_TRY(reserve(solver, together, error));
+  for (size_t i = 0; i < count; i += together)
+    RIC_TRY(halt_together(solver, t, q, u, obstacles + i, together, loss, error));
   return RIC_OK;
 }
 

@@ -19,7 +19,6 @@ typedef struct impact {
   double rate, rate_end; /* gap rates before and after */
   double impulse;
   double loss;         /* of energy; NaN where unknown */
-  double inverse_mass; /* g^T M^-1 g; NaN for impact maps */
   bool coupled;        /* with another of the list */
   double accumulation; /* time from now at which the series of its impacts ends; NaN: no chatter */
 } impact;
@@ -49,6 +48,11 @@ ric_status impact_apply(impact_solver *solver, double t, double *q, double *u, i
  *  @param restitution  of the hit */
 ric_status impact_stick(impact_solver *solver, double t, double *q, double *u, impact *contact, double restitution,
                         ric_error *error);
+
+/** Brings the gap rates of contacts that persist to zero, by impulses of either sign: what rounding and the flow have
+ * left of them, all together where they couple. Not for first-order systems. @param loss  of energy, set */
+ric_status impact_halt(impact_solver *solver, double t, const double *q, double *u, const size_t *obstacles,
+                       size_t count, double *loss, ric_error *error);
 
 /** Direction of one contact, in the solver's storage until its next call; not for first-order systems.
  *  @param inverse_mass  g^T M^-1 g */

@@ -164,11 +164,11 @@ static ric_status is_pressed_on(ric_trajectory *tr, size_t obstacle, double rate
 /* A root of an open rigid contact: an impact, a touch with rate zero, or noise on its way out. */
 static ric_status sort_root(ric_trajectory *tr, size_t obstacle, ric_error *error) {
   double rate = rate_now(tr, obstacle);
-  bool pressed = false;
-  if (rate < -tr->rate_noise)
+  bool pressed;
+  if (rate < -tr->rate_noise) {
     RIC_TRY(is_pressed_on(tr, obstacle, rate, &pressed, error));
-  if (rate < -tr->rate_noise)
     return pressed ? index_list_add(&tr->settling, obstacle, error) : add_impact(tr, obstacle, error);
+  }
   ric_event event = event_of(tr, RIC_EVENT_GRAZING, obstacle);
   event.gap_rate = event.gap_rate_end = rate;
   event.depth = gap_now(tr, obstacle);

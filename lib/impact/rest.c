@@ -97,7 +97,7 @@ static double first_duration(const ric_trajectory *tr, const impact *c, double a
 }
 
 /* Duration below which a series is summed up. An error of the flow's tolerance in the gap makes one of tolerance / w in
- * the time of landing, w being about the duration, and summing up costs its third power: so the two meet at the fourth
+ * the time of landing, w growing with the duration, and summing up costs its third power: so the two meet at the fourth
  * root of the tolerance, and to follow a series any further only costs digits. */
 static double chatter_limit(const ric_trajectory *tr) {
   double size = tr->locator.noise / tr->noise;
@@ -202,22 +202,24 @@ ric_status contact_put_on(ric_trajectory *tr, size_t obstacle, ric_error *error)
   return RIC_OK;
 }
 
-/* Gap and gap rate of a held contact are zero: exactly at a coordinate, to rounding otherwise. */
+/* The gap of a held contact is zero; see halt for its rate. */
 static ric_status hold(ric_trajectory *tr, size_t obstacle, ric_error *error) {
-  const ric_system *s = tr->system;
-  contact_direction d;
-  double inverse_mass;
   flow_set_contact(tr->flow, obstacle, CONTACT_HELD);
   tr->locator.departure[obstacle] = DEPARTED;
-  RIC_TRY(contact_put_on(tr, obstacle, error));
-  if (s->obstacles)
-    tr->flow->u[s->obstacles[obstacle].coordinate] = 0;
-  else if (s->model->direction) {
-    double rate = ric_system_gap_rate(s, obstacle, tr->flow->time, tr->flow->q, tr->flow->u);
-    RIC_TRY(impact_direction(&tr->law, tr->flow->time, tr->flow->q, obstacle, &d, &inverse_mass, error));
-    for (size_t i = 0; i < d.count; i++)
-      tr->flow->u[d.first + i] -= rate / inverse_mass * d.w[i];
-  }
+  return contact_put_on(tr, obstacle, error);
+}
+
+/* Gap rates of all held contacts are zero: to rounding, and at coordinates exactly. */
+static ric_status halt(ric_trajectory *tr, ric_error *error) {
+  const ric_system *s = tr->system;
+  ric_flow *f = tr->flow;
+  double loss;
+  if (tr->held.count == 0 || !s->model->direction)
+    return RIC_OK;
+  RIC_TRY(impact_halt(&tr->law, f->time, f->q, f->u, tr->held.items, tr->held.count, &loss, error));
+  tr->run->impact_loss += loss;
+  for (size_t i = 0; s->obstacles && i < tr->held.count; i++)
+    f->u[s->obstacles[tr->held.items[i]].coordinate] = 0;
   return RIC_OK;
 }
 
@@ -231,7 +233,7 @@ ric_status contacts_keep_on(ric_trajectory *tr, bool *moved, ric_error *error) {
     RIC_TRY(hold(tr, obstacle, error));
     *moved = true;
   }
-  return RIC_OK;
+  return *moved ? halt(tr, error) : RIC_OK;
 }
 
 static ric_status open_slowly(ric_trajectory *tr, size_t obstacle, ric_error *error) {
@@ -282,5 +284,5 @@ ric_status contacts_settle(ric_trajectory *tr, ric_error *error) {
   }
   list->count = 0;
   contacts_forget_released(tr);
-  return RIC_OK;
+  return halt(tr, error);
 }

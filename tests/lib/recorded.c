@@ -62,6 +62,26 @@ const ric_event *recorded_first(const recorded *r, ric_event_kind kind) {
   return NULL;
 }
 
+static int is_rest(const ric_event *event) {
+  return event->kind == RIC_EVENT_REST || event->kind == RIC_EVENT_RELEASE;
+}
+
+size_t recorded_rests_agree(const recorded *r, const recorded *witness, double tolerance) {
+  size_t next = 0, compared = 0;
+  assert_true(witness->count > r->count);
+  for (size_t i = 0; i < r->count; i++) {
+    if (!is_rest(&r->events[i]))
+      continue;
+    while (next < witness->count && !is_rest(&witness->events[next]))
+      next++;
+    assert_true(next < witness->count);
+    assert_int_equal(r->events[i].kind, witness->events[next].kind);
+    assert_close(r->events[i].time, witness->events[next++].time, tolerance);
+    compared++;
+  }
+  return compared;
+}
+
 static double difference(const double *a, const double *b, size_t count) {
   double largest = 0;
   for (size_t i = 0; i < count; i++)

@@ -23,6 +23,10 @@ size_t recorded_impacts(const recorded *r);
 /** First event of a kind, NULL when there is none. */
 const ric_event *recorded_first(const recorded *r, ric_event_kind kind);
 
+/** Asserts that a run's rests and releases are those of a witness that has followed more impacts, at the same times
+ *  within `tolerance`. @returns how many were compared */
+size_t recorded_rests_agree(const recorded *r, const recorded *witness, double tolerance);
+
 /** Largest difference of the states reached. */
 double recorded_difference(const recorded *a, const recorded *b);
 
