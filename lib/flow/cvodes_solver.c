@@ -98,6 +98,7 @@ ric_status cvodes_solver_init(cvodes_solver *s, double longest_step, ric_error *
 }
 
 void cvodes_solver_clear(cvodes_solver *s) {
+  cvodes_tangents_clear(s);
   if (s->memory)
     CVodeFree(&s->memory);
   if (s->iteration)
@@ -114,7 +115,9 @@ void cvodes_solver_clear(cvodes_solver *s) {
 
 const char *cvodes_solver_restart(cvodes_solver *s, double t) {
   s->origin = t;
-  return CVodeReInit(s->memory, 0, s->y) ? "CVODES refuses to start" : NULL;
+  if (CVodeReInit(s->memory, 0, s->y))
+    return "CVODES refuses to start";
+  return s->tangents.columns > 0 ? cvodes_tangents_restart(s) : NULL;
 }
 
 static const char *text_of(int code) {

@@ -12,6 +12,15 @@
 
 enum { CVODES_ORDER = 12 };
 
+/** Tangent vectors in CVODES' forward sensitivity analysis (staggered, under the error control of the state). */
+typedef struct cvodes_tangents {
+  size_t columns;   /* 0: none */
+  N_Vector *vector; /* [columns] */
+  SUNNonlinearSolver iteration;
+  double *absolute;     /* [columns] tolerances */
+  double **d, **d_rate; /* [columns] the numbers of vectors, for the callback */
+} cvodes_tangents;
+
 typedef struct cvodes_solver {
   SUNContext context;
   void *memory;
@@ -24,7 +33,10 @@ typedef struct cvodes_solver {
   double tolerance;
   /** Rates of the state [size]. */
   const char *(*rate)(void *user, double t, const double *y, double *y_rate);
+  /** Rates of the tangent vectors d [columns][size] at a state. */
+  const char *(*tangent_rate)(void *user, double t, const double *y, double *const *d, double *const *d_rate);
   void *user;
+  cvodes_tangents tangents;
   const char *trouble; /* of the last call of `rate` that failed, and when */
   double trouble_time;
 } cvodes_solver;
@@ -34,6 +46,19 @@ void cvodes_solver_clear(cvodes_solver *s);
 
 /** The state [size]; written before a restart, read after a step. */
 double *cvodes_solver_state(const cvodes_solver *s);
+
+/** Makes room for tangent vectors; 0: none any more. A restart must follow. */
+ric_status cvodes_solver_carry(cvodes_solver *s, size_t columns, ric_error *error);
+void cvodes_tangents_clear(cvodes_solver *s);
+
+/** Tangent vector [size]; written before a restart, read after cvodes_tangents_at. */
+double *cvodes_solver_tangent(const cvodes_solver *s, size_t column);
+
+/** Tells CVODES of the tangent vectors, after a restart. */
+const char *cvodes_tangents_restart(cvodes_solver *s);
+
+/** Sets the tangent vectors to those at a position of the last step, 0 <= x <= 1. */
+const char *cvodes_tangents_at(cvodes_solver *s, double x);
 
 /** Forgets the history. */
 const char *cvodes_solver_restart(cvodes_solver *s, double t);

@@ -1,5 +1,6 @@
 #include "ricochet/flow.h"
 
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -58,8 +59,10 @@ void flow_clear(ric_flow *flow) {
   free(flow->q);
   free(flow->u);
   free(flow->contact);
+  free(flow->tangent.q);
   flow->q = flow->u = NULL;
   flow->contact = NULL;
+  flow->tangent = (tangents){0};
 }
 
 void ric_flow_destroy(ric_flow **flow) {
@@ -84,10 +87,54 @@ ric_status ric_flow_start(ric_flow *flow, double t, const double *q, const doubl
   RIC_TRY(check_finite("u", u, m, error));
   flow->time = flow->end = t;
   flow->length = 0;
+  flow->tangent.columns = 0;
   memmove(flow->q, q, n * sizeof *q); /* a caller may start from the flow's own state */
   if (m)
     memmove(flow->u, u, m * sizeof *u);
   return flow_restart(flow, error);
+}
+
+/* Room for tangents, in one block. */
+static ric_status reserve_tangents(ric_flow *flow, size_t columns, ric_error *error) {
+  size_t n = flow->system->coordinates, m = flow->system->speeds;
+  tangents *d = &flow->tangent;
+  if (columns == d->columns)
+    return RIC_OK;
+  free(d->q);
+  *d = (tangents){0};
+  if (columns == 0)
+    return RIC_OK;
+  d->q = columns <= SIZE_MAX / sizeof *d->q / (n + m) ? malloc((n + m) * columns * sizeof *d->q) : NULL;
+  if (!d->q)
+    return ric_fail(error, RIC_ENOMEM, "no memory for %zu tangent vectors of %zu numbers", columns, n + m);
+  d->u = d->q + n * columns;
+  d->columns = columns;
+  return RIC_OK;
+}
+
+ric_status ric_flow_carry(ric_flow *flow, size_t columns, const double *dq, const double *du, ric_error *error) {
+  size_t n = flow->system->coordinates, m = flow->system->speeds;
+  RIC_TRY(check_finite("dq", dq, n * columns, error));
+  RIC_TRY(check_finite("du", du, m * columns, error));
+  RIC_TRY(reserve_tangents(flow, columns, error));
+  if (columns > 0)
+    memcpy(flow->tangent.q, dq, n * columns * sizeof *dq);
+  if (columns > 0 && m > 0)
+    memcpy(flow->tangent.u, du, m * columns * sizeof *du);
+  RIC_TRY(flow->method->carry(flow, error));
+  return flow_restart(flow, error);
+}
+
+size_t ric_flow_columns(const ric_flow *flow) {
+  return flow->tangent.columns;
+}
+
+const double *ric_flow_dq(const ric_flow *flow) {
+  return flow->tangent.q;
+}
+
+const double *ric_flow_du(const ric_flow *flow) {
+  return flow->tangent.u;
 }
 
 ric_status flow_restart(ric_flow *flow, ric_error *error) {
@@ -114,6 +161,8 @@ ric_segment ric_flow_piece(ric_flow *flow, size_t index) {
 }
 
 void ric_flow_accept(ric_flow *flow, double x) {
+  if (flow->tangent.columns > 0 && x > 0)
+    flow->method->transport(flow, x);
   flow->method->accept(flow, x);
   flow->time = x == 1 ? flow->end : flow->time + x * flow->length;
   flow->length = 0;

@@ -16,6 +16,10 @@ typedef struct flow_method {
   /** Force of a held contact along the step as a polynomial c [RIC_POLY_DEGREE + 1] in x; returns its degree, -1 when
    * it has none. NULL: the flow knows its states only, and forces follow from those. */
   int (*reaction)(ric_flow *flow, size_t obstacle, double *c);
+  /** There are other tangents, flow->tangent: makes room for them. */
+  ric_status (*carry)(ric_flow *flow, ric_error *error);
+  /** Moves flow->tangent to position x of the step; the state has not been moved yet. */
+  void (*transport)(ric_flow *flow, double x);
   void (*destroy)(ric_flow *flow);
 } flow_method;
 
@@ -27,6 +31,7 @@ struct ric_flow {
   double time, length, end; /* start of the step, its signed length, its end */
   double *q, *u;            /* [n], [m] state at `time`, owned */
   unsigned char *contact;   /* [obstacles] contact_state, owned */
+  tangents tangent;         /* at `time`, owned */
   size_t pieces;
   ric_flow_counts counts;
 };
@@ -44,7 +49,7 @@ ric_status flow_init(ric_flow *flow, const flow_method *method, const ric_system
                      const ric_flow_options *options, ric_error *error);
 void flow_clear(ric_flow *flow);
 
-/** The state or the contacts were changed in place: forgets the history. */
+/** The state, the tangents or the contacts were changed in place: forgets the history. */
 ric_status flow_restart(ric_flow *flow, ric_error *error);
 
 /** Changes the state of a contact. Takes effect with the next start or restart. A held coordinate must have rate zero.

@@ -20,6 +20,23 @@ double hertz_series_next(hertz_series *s, int j, double u) {
   return s->p[j] = (sum[0] + sum[1] + (sum[2] + sum[3])) / (j * s->u[0]);
 }
 
+void hertz_root_series(const double *u, int order, double *r) {
+  r[0] = sqrt(u[0]);
+  for (int j = 1; j <= order; j++) {
+    double sum = 0;
+    for (int i = 1; i <= j; i++)
+      sum += (1.5 * i - j) * u[i] * r[j - i];
+    r[j] = sum / (j * u[0]);
+  }
+}
+
+double hertz_left_out(double stiffness, double u_start, double u_end, double duration) {
+  double a = fmax(u_start, 0), b = fmax(u_end, 0), change = u_end - u_start;
+  if (change == 0)
+    return 1.5 * stiffness * sqrt(a) * duration;
+  return stiffness * (b * sqrt(b) - a * sqrt(a)) / change * duration;
+}
+
 double hertz_series_nearest_zero(const hertz_series *s) {
   return s->u[0] / (fabs(s->u[1]) + sqrt(s->u[0] * fabs(s->u[2]))); /* u_1 x + u_2 x^2 is below u_0 there */
 }

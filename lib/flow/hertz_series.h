@@ -21,6 +21,13 @@ typedef struct hertz_series {
 /** Takes u_j and finds p_j; levels come in order from 0, and u_0 > 0. @returns p_j */
 double hertz_series_next(hertz_series *s, int j, double u);
 
+/** Coefficients r [order + 1] of u^{1/2} from those of u, u_0 > 0: u r' = u' r / 2. For the derivative of the force. */
+void hertz_root_series(const double *u, int order, double *r);
+
+/** Change of the speed of a tangent vector, over minus its coordinate and the mass, by a contact whose force was left
+ *  out of a step: the stiffness 3/2 k u^{1/2} over its duration, while u goes evenly from one value to the other. */
+double hertz_left_out(double stiffness, double u_start, double u_end, double duration);
+
 /** Lower bound of |x| for zeros of u, from u_0, u_1 and u_2. */
 double hertz_series_nearest_zero(const hertz_series *s);
 

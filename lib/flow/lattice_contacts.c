@@ -75,6 +75,13 @@ ric_status lattice_flow_take_contacts(lattice_flow *f, int direction, double *li
   return RIC_OK;
 }
 
+bool lattice_flow_acts(const lattice_flow *f, const lattice_press *p) {
+  for (size_t k = 0; k < f->acting_count; k++)
+    if (same_press(&f->acting[k], p))
+      return true;
+  return false;
+}
+
 /* Force of Hertz contacts on a coordinate that stays where it is. */
 static double constant_push(const lattice_flow *f, size_t coordinate) {
   double force = 0;

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "lattice_flow_parts.h"
+#include "hertz_series.h"
 #include "model/lattice_force.h"
 #include "model/lattice_system.h"
 
@@ -95,10 +96,61 @@ static void accept(ric_flow *flow, double x) {
   f->ended = 0;
 }
 
+static size_t compliant_obstacles(const ric_system *system) {
+  size_t count = 0;
+  for (size_t j = 0; j < system->obstacle_count; j++)
+    count += isfinite(system->obstacles[j].stiffness) != 0;
+  return count;
+}
+
+static ric_status carry(ric_flow *flow, ric_error *error) {
+  lattice_flow *f = self(flow);
+  if (f->variation || flow->tangent.columns == 0)
+    return RIC_OK;
+  return lattice_variation_create(f->lattice, f->stepper.order, compliant_obstacles(flow->system) > 0, &f->variation,
+                                  error);
+}
+
+static double coordinate_at(ric_flow *flow, size_t i, double x) {
+  ric_segment s = piece(flow, i / self(flow)->block);
+  double q = 0;
+  for (int j = s.degree; j >= 0; j--)
+    q = q * x + s.coef[(size_t)j * s.stride + i - s.first];
+  return q;
+}
+
+/* What contacts do to the tangent vectors whose force was left out of the step. */
+static void kick(ric_flow *flow, const lattice_press *p, double x) {
+  const lattice_flow *f = self(flow);
+  size_t i = p->coordinate, columns = flow->tangent.columns;
+  double start = p->side * (p->position - flow->q[i]), end = p->side * (p->position - coordinate_at(flow, i, x));
+  double change = hertz_left_out(p->stiffness, start, end, x * flow->length) / ric_lattice_mass(f->lattice, i);
+  for (size_t k = 0; k < columns; k++)
+    flow->tangent.u[i * columns + k] -= change * flow->tangent.q[i * columns + k];
+}
+
+static void transport(ric_flow *flow, double x) {
+  lattice_flow *f = self(flow);
+  lattice_contacts contacts = {f->held, f->held_count, f->acting, f->acting_count};
+  lattice_variation_begin(f->variation, x * flow->length);
+  if (lattice_variation_varies(f->variation, &contacts)) {
+    for (size_t i = 0; i < flow->pieces; i++) {
+      ric_segment s = piece(flow, i);
+      lattice_variation_take(f->variation, &s, x);
+    }
+    lattice_variation_stiffen(f->variation, &contacts);
+  }
+  lattice_variation_transport(f->variation, &contacts, &flow->tangent);
+  for (size_t k = 0; k < f->pressed_count; k++)
+    if (!lattice_flow_acts(f, &f->pressed[k]))
+      kick(flow, &f->pressed[k], x);
+}
+
 static void destroy(ric_flow *flow) {
   lattice_flow *f = self(flow);
   lattice_series_destroy(&f->series);
   lattice_series_destroy(&f->aside);
+  lattice_variation_destroy(&f->variation);
   free(f->q_next);
   free(f->u_next);
   free(f->held);
@@ -112,14 +164,9 @@ static const flow_method method = {.start = start,
                                    .piece = piece,
                                    .accept = accept,
                                    .reaction = lattice_flow_reaction,
+                                   .carry = carry,
+                                   .transport = transport,
                                    .destroy = destroy};
-
-static size_t compliant_obstacles(const ric_system *system) {
-  size_t count = 0;
-  for (size_t j = 0; j < system->obstacle_count; j++)
-    count += isfinite(system->obstacles[j].stiffness) != 0;
-  return count;
-}
 
 static ric_status allocate(lattice_flow *f, ric_error *error) {
   size_t n = f->base.system->coordinates, obstacles = f->base.system->obstacle_count;

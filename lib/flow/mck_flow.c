@@ -11,36 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "flow_method.h"
-#include "hertz_series.h"
-#include "model/mck_hold.h"
-#include "taylor_stepper.h"
-
-typedef struct pressed_contact {
-  const ric_obstacle *obstacle;
-  bool acts; /* its force takes part in this step */
-  hertz_series series;
-} pressed_contact;
-
-typedef struct mck_flow {
-  ric_flow base;
-  taylor_stepper stepper;
-  double expanded;      /* length of the series */
-  double *coef;         /* [order + 1][n] */
-  double *acceleration; /* [n] */
-  double *reaction;     /* [held coordinates][order - 1] coefficients of mu */
-  mck_hold hold;
-  pressed_contact *pressed; /* [pressed_count] */
-  size_t pressed_count;
-} mck_flow;
-
-static const mck_system *system_of(const mck_flow *f) {
-  return mck_of(f->base.system);
-}
-
-static double *level(const mck_flow *f, int j) {
-  return f->coef + (size_t)j * f->base.system->coordinates;
-}
+#include "mck_flow_parts.h"
 
 /* Coefficients [order - 1] of the force of a held coordinate. */
 static double *reaction_of(const mck_flow *f, size_t k) {
@@ -76,21 +47,21 @@ static void add_pressure(mck_flow *f, int j) {
   for (size_t k = 0; k < f->pressed_count; k++) {
     pressed_contact *c = &f->pressed[k];
     const ric_obstacle *o = c->obstacle;
-    double q = level(f, j)[o->coordinate];
+    double q = mck_flow_level(f, j)[o->coordinate];
     if (!c->acts)
       continue;
     double p = hertz_series_next(&c->series, j, j == 0 ? -ric_obstacle_gap(o, q) : -o->side * q);
-    mck_push(system_of(f), o->coordinate, o->side * o->stiffness * p, f->acceleration);
+    mck_push(mck_flow_system(f), o->coordinate, o->side * o->stiffness * p, f->acceleration);
   }
 }
 
 /* Level j of the accelerations, with that of the reactions. */
 static void accelerate(mck_flow *f, double h, int j, harmonic w) {
-  const mck_system *s = system_of(f);
+  const mck_system *s = mck_flow_system(f);
   memset(f->acceleration, 0, s->base.coordinates * sizeof *f->acceleration);
   add_forcing(s, w, f->acceleration);
-  mck_rows_apply(&s->stiffness, -1, level(f, j), f->acceleration);
-  mck_rows_apply(&s->damping, -(j + 1) / h, level(f, j + 1), f->acceleration);
+  mck_rows_apply(&s->stiffness, -1, mck_flow_level(f, j), f->acceleration);
+  mck_rows_apply(&s->damping, -(j + 1) / h, mck_flow_level(f, j + 1), f->acceleration);
   add_pressure(f, j);
   mck_hold_project(&f->hold, s, f->acceleration);
   for (size_t k = 0; k < f->hold.count; k++)
@@ -99,11 +70,12 @@ static void accelerate(mck_flow *f, double h, int j, harmonic w) {
 
 static void set_start(mck_flow *f, double h) {
   size_t n = f->base.system->coordinates;
-  memcpy(level(f, 0), f->base.q, n * sizeof *f->coef);
+  memcpy(mck_flow_level(f, 0), f->base.q, n * sizeof *f->coef);
   for (size_t i = 0; i < n; i++)
-    level(f, 1)[i] = h * f->base.u[i];
+    mck_flow_level(f, 1)[i] = h * f->base.u[i];
   for (size_t k = 0; k < f->hold.count; k++)
-    level(f, 1)[f->hold.coordinate[k]] = 0; /* a held coordinate must not drift by a rounding error of its rate */
+    mck_flow_level(f, 1)[f->hold.coordinate[k]] =
+        0; /* a held coordinate must not drift by a rounding error of its rate */
 }
 
 static taylor_decay decay(const mck_flow *f) {
@@ -118,11 +90,11 @@ static taylor_decay decay(const mck_flow *f) {
 /* All coefficients over a step h. */
 static taylor_decay mck_expand(ric_flow *flow, double h) {
   mck_flow *f = (mck_flow *)flow;
-  const mck_system *s = system_of(f);
+  const mck_system *s = mck_flow_system(f);
   harmonic w = harmonic_at(s, flow->time);
   set_start(f, h);
   for (int j = 0; j + 2 <= f->stepper.order; j++) {
-    double h2 = h * h, divisor = (j + 1) * (j + 2), *restrict next = level(f, j + 2);
+    double h2 = h * h, divisor = (j + 1) * (j + 2), *restrict next = mck_flow_level(f, j + 2);
     accelerate(f, h, j, w);
     for (size_t i = 0; i < s->base.coordinates; i++)
       next[i] = h2 * f->acceleration[i] / divisor; /* see lattice_block.c for quotients */
@@ -136,7 +108,7 @@ static void mck_shorten(ric_flow *flow, double length) {
   mck_flow *f = (mck_flow *)flow;
   double theta = length / f->expanded, power = theta;
   for (int j = 1; j <= f->stepper.order; j++, power *= theta) {
-    double *c = level(f, j);
+    double *c = mck_flow_level(f, j);
     for (size_t i = 0; i < flow->system->coordinates; i++)
       c[i] *= power;
     for (size_t k = 0; j <= f->stepper.order - 2 && k < f->hold.count; k++)
@@ -147,16 +119,12 @@ static void mck_shorten(ric_flow *flow, double length) {
 
 /* --- Hertz contacts -------------------------------------------------------------------------------------------- */
 
-static double penetration(const mck_flow *f, const pressed_contact *c) {
-  return -ric_obstacle_gap(c->obstacle, f->base.q[c->obstacle->coordinate]);
-}
-
 /* Accelerations at the start of the step. */
 static void accelerate_start(mck_flow *f) {
   set_start(f, 1);
   for (size_t k = 0; k < f->pressed_count; k++)
-    f->pressed[k].acts = penetration(f, &f->pressed[k]) > 0;
-  accelerate(f, 1, 0, harmonic_at(system_of(f), f->base.time));
+    f->pressed[k].acts = mck_flow_penetration(f, &f->pressed[k]) > 0;
+  accelerate(f, 1, 0, harmonic_at(mck_flow_system(f), f->base.time));
 }
 
 /* Sorts out which pressed contacts act; @returns whether one does. */
@@ -169,10 +137,10 @@ static bool choose_acting(mck_flow *f, int direction, double *limit) {
   for (size_t k = 0; k < f->pressed_count; k++) {
     pressed_contact *p = &f->pressed[k];
     size_t i = p->obstacle->coordinate;
-    hertz_contact c = {.penetration = penetration(f, p),
+    hertz_contact c = {.penetration = mck_flow_penetration(f, p),
                        .rate = -p->obstacle->side * direction * f->base.u[i],
                        .bend = fabs(f->acceleration[i]),
-                       .strength = p->obstacle->stiffness * mck_mobility(system_of(f), i)};
+                       .strength = p->obstacle->stiffness * mck_mobility(mck_flow_system(f), i)};
     p->acts = hertz_acts(&c, f->base.options.tolerance, natural, least, limit);
     any |= p->acts;
   }
@@ -236,6 +204,7 @@ static void mck_flow_destroy(ric_flow *flow) {
   free(f->acceleration);
   free(f->reaction);
   free(f->pressed);
+  free(f->variation);
   mck_hold_clear(&f->hold);
   flow_clear(flow);
   free(f);
@@ -246,6 +215,8 @@ static const flow_method mck_method = {.start = mck_start,
                                        .piece = mck_piece,
                                        .accept = mck_accept,
                                        .reaction = mck_reaction,
+                                       .carry = mck_flow_carry,
+                                       .transport = mck_flow_transport,
                                        .destroy = mck_flow_destroy};
 
 static size_t obstacles_that(const ric_system *s, bool comply) {

@@ -220,32 +220,36 @@ ric_status impact_stick(impact_solver *solver, double t, double *q, double *u, i
   return RIC_OK;
 }
 
-/* The equations A p = -h' of contacts [count] whose directions follow each other in the solver. */
-static ric_status halt_together(impact_solver *s, double t, const double *q, double *u, const size_t *obstacles,
-                                size_t count, double *loss, ric_error *error) {
+/* The equations A p = -(1 + e) h' of contacts [count] whose directions follow each other in the solver. */
+static ric_status reflect_together(impact_solver *s, double t, const double *q, double *u, const size_t *obstacles,
+                                   const double *restitution, size_t count, double *loss, ric_error *error) {
   for (size_t i = 0; i < count; i++) {
     RIC_TRY(find_direction(s, i, obstacles[i], t, q, error));
     RIC_TRY(read_rate(s, t, q, u, obstacles[i], &s->rhs[i], error));
-    s->solution[i] = -s->rhs[i];
+    s->solution[i] = -(restitution ? 1 + restitution[i] : 1) * s->rhs[i];
   }
   fill_matrix(s, count);
   cholesky_factor_semidefinite(s->matrix, count);
   cholesky_solve(s->matrix, count, s->solution);
   for (size_t i = 0; i < count; i++) {
-    impact c = {.rate = s->rhs[i], .impulse = s->solution[i]};
+    impact c = {
+        .rate = s->rhs[i], .rate_end = restitution ? -restitution[i] * s->rhs[i] : 0, .impulse = s->solution[i]};
     *loss += work_lost(&c, s->directions[i].offset);
     push(&s->directions[i], c.impulse, u);
   }
   return RIC_OK;
 }
 
-ric_status impact_halt(impact_solver *solver, double t, const double *q, double *u, const size_t *obstacles,
-                       size_t count, double *loss, ric_error *error) {
+ric_status impact_reflect(impact_solver *solver, double t, const double *q, double *u, const size_t *obstacles,
+                          const double *restitution, size_t count, double *loss, ric_error *error) {
   size_t together = solver->system->uncoupled ? 1 : count;
-  *loss = 0;
+  double sum = 0;
   RIC_TRY(reserve(solver, together, error));
   for (size_t i = 0; i < count; i += together)
-    RIC_TRY(halt_together(solver, t, q, u, obstacles + i, together, loss, error));
+    RIC_TRY(
+        reflect_together(solver, t, q, u, obstacles + i, restitution ? restitution + i : NULL, together, &sum, error));
+  if (loss)
+    *loss = sum;
   return RIC_OK;
 }
 

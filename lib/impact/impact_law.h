@@ -49,10 +49,12 @@ ric_status impact_apply(impact_solver *solver, double t, double *q, double *u, i
 ric_status impact_stick(impact_solver *solver, double t, double *q, double *u, impact *contact, double restitution,
                         ric_error *error);
 
-/** Brings the gap rates of contacts that persist to zero, by impulses of either sign: what rounding and the flow have
- * left of them, all together where they couple. Not for first-order systems. @param loss  of energy, set */
-ric_status impact_halt(impact_solver *solver, double t, const double *q, double *u, const size_t *obstacles,
-                       size_t count, double *loss, ric_error *error);
+/** Turns the gap rates of contacts into -e times themselves by impulses of either sign, all together where they couple:
+ * halts contacts that persist, and is the law itself once it is known which contacts push. Not for first-order systems.
+ *  @param restitution  [count]; NULL: zeros
+ *  @param loss  of energy, set; may be NULL */
+ric_status impact_reflect(impact_solver *solver, double t, const double *q, double *u, const size_t *obstacles,
+                          const double *restitution, size_t count, double *loss, ric_error *error);
 
 /** Direction of one contact, in the solver's storage until its next call; not for first-order systems.
  *  @param inverse_mass  g^T M^-1 g */

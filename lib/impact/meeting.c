@@ -167,8 +167,12 @@ static ric_status sort_root(ric_trajectory *tr, size_t obstacle, ric_error *erro
   bool pressed;
   if (rate < -tr->rate_noise) {
     RIC_TRY(is_pressed_on(tr, obstacle, rate, &pressed, error));
-    return pressed ? index_list_add(&tr->settling, obstacle, error) : add_impact(tr, obstacle, error);
+    if (!pressed)
+      return add_impact(tr, obstacle, error);
+    carried_lose(tr, obstacle, RIC_SALTATION_GRAZING);
+    return index_list_add(&tr->settling, obstacle, error);
   }
+  carried_lose(tr, obstacle, RIC_SALTATION_GRAZING);
   ric_event event = event_of(tr, RIC_EVENT_GRAZING, obstacle);
   event.gap_rate = event.gap_rate_end = rate;
   event.depth = gap_now(tr, obstacle);
@@ -198,10 +202,12 @@ static ric_status resolve(ric_trajectory *tr, ric_error *error) {
   }
   contacts_forget_released(tr);
   RIC_TRY(contacts_settle(tr, error));
+  RIC_TRY(carried_meet(tr, hits, error));
   return flow_restart(tr->flow, error);
 }
 
 ric_status contacts_meet(ric_trajectory *tr, ric_error *error) {
+  carried_mark(tr);
   contacts_measure(tr);
   tr->impact_count = tr->settling.count = 0;
   for (size_t i = 0; i < tr->locator.roots.count; i++) {
@@ -234,11 +240,18 @@ static ric_status begin_one(ric_trajectory *tr, size_t obstacle, ric_error *erro
 }
 
 ric_status contacts_begin(ric_trajectory *tr, ric_error *error) {
+  carried_mark(tr);
   contacts_measure(tr);
   tr->impact_count = tr->settling.count = 0;
   for (size_t j = 0; j < tr->system->obstacle_count; j++)
     RIC_TRY(begin_one(tr, j, error));
-  return resolve(tr, error);
+  RIC_TRY(resolve(tr, error));
+  for (size_t i = 0; i < tr->held.count; i++)
+    carried_hold(tr, tr->held.items[i]);
+  for (size_t i = 0; i < tr->departing.count; i++)
+    if (tr->locator.departure[tr->departing.items[i]] == DEPARTS_SLOWLY)
+      carried_lose(tr, tr->departing.items[i], RIC_SALTATION_GRAZING);
+  return RIC_OK;
 }
 
 ric_status contacts_depart(ric_trajectory *tr, ric_error *error) {

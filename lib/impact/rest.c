@@ -216,7 +216,7 @@ static ric_status halt(ric_trajectory *tr, ric_error *error) {
   double loss;
   if (tr->held.count == 0 || !s->model->direction)
     return RIC_OK;
-  RIC_TRY(impact_halt(&tr->law, f->time, f->q, f->u, tr->held.items, tr->held.count, &loss, error));
+  RIC_TRY(impact_reflect(&tr->law, f->time, f->q, f->u, tr->held.items, NULL, tr->held.count, &loss, error));
   tr->run->impact_loss += loss;
   for (size_t i = 0; s->obstacles && i < tr->held.count; i++)
     f->u[s->obstacles[tr->held.items[i]].coordinate] = 0;

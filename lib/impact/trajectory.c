@@ -101,6 +101,7 @@ void ric_trajectory_destroy(ric_trajectory **trajectory) {
   free(tr->accelerations);
   free(tr->forces);
   free(tr->coming);
+  carried_clear(&tr->carried);
   free(tr);
   *trajectory = NULL;
 }
@@ -125,6 +126,7 @@ ric_status ric_trajectory_start(ric_trajectory *tr, double t, const double *q, c
   memset(tr->resting, RESTS_NOT, count);
   memset(tr->locator.departure, DEPARTED, count);
   tr->held.count = tr->departing.count = tr->coming_count = 0;
+  tr->carried.kind = RIC_SALTATION_DIFFERENTIABLE;
   RIC_TRY(ric_flow_start(tr->flow, t, q, u, error));
   RIC_TRY(check_start(tr, t, q, error));
   tr->started = tr->fresh = true;
@@ -171,6 +173,7 @@ static void show_grazes(ric_trajectory *tr, double start, double length) {
     event.time = start + h->x * length;
     event.depth = h->depth;
     trajectory_show(tr, &event);
+    carried_lose(tr, h->obstacle, RIC_SALTATION_GRAZING);
   }
 }
 
@@ -233,6 +236,16 @@ static void conclude(ric_trajectory *tr, ric_run_outcome outcome, const char *re
   snprintf(tr->run->reason, sizeof tr->run->reason, "%s", reason);
 }
 
+/* Whether tangent vectors are lost, which ends the run. */
+static ric_status look_at_carried(ric_trajectory *tr, bool *lost, ric_error *error) {
+  ric_saltation_kind kind = tr->carried.kind;
+  *lost = kind != RIC_SALTATION_DIFFERENTIABLE;
+  if (!*lost)
+    return RIC_OK;
+  conclude(tr, kind == RIC_SALTATION_GRAZING ? RIC_RUN_GRAZING : RIC_RUN_NOT_DIFFERENTIABLE, "");
+  return carried_end(tr, tr->run->reason, sizeof tr->run->reason, error);
+}
+
 /* Whether the run is over, and how. */
 static bool is_over(ric_trajectory *tr, double end) {
   char reason[128];
@@ -252,14 +265,17 @@ static bool is_over(ric_trajectory *tr, double end) {
 }
 
 static ric_status move(ric_trajectory *tr, double end, ric_error *error) {
+  bool lost = false;
   if (tr->fresh) {
     tr->fresh = false;
     RIC_TRY(contacts_begin(tr, error));
   }
-  while (!is_over(tr, end)) {
+  RIC_TRY(look_at_carried(tr, &lost, error));
+  while (!lost && !is_over(tr, end)) {
     if (ric_poll_stops(tr->options.poll))
       return ric_fail(error, RIC_ESTOPPED, "stopped at t = %g", tr->flow->time);
     RIC_TRY(advance(tr, end, error));
+    RIC_TRY(look_at_carried(tr, &lost, error));
   }
   return RIC_OK;
 }

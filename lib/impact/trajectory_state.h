@@ -5,6 +5,7 @@
 #include "impact_law.h"
 #include "locate.h"
 #include "ricochet/trajectory.h"
+#include "tangent_jump.h"
 
 /** Obstacles in a list that grows. */
 typedef struct index_list {
@@ -22,6 +23,21 @@ typedef struct coming_rest {
   double time;
   size_t obstacle;
 } coming_rest;
+
+/** What tangent vectors need where contacts meet. */
+typedef struct carried {
+  tangent_jump jump;
+  double *before;                                          /* [n + m] state before what is happening now */
+  unsigned char *contact, *contact_before, *contact_after; /* [obstacles] the same for contacts: between impacts of one
+                                                              time, before them, after one */
+  double *other;       /* [n + m][columns] in the other order of simultaneous impacts */
+  double *state;       /* [n + m] between impacts of one time */
+  index_list group;    /* contacts that push together, */
+  double *restitution; /* [restitution_capacity] and theirs */
+  size_t restitution_capacity;
+  ric_saltation_kind kind; /* of the last contacts; not differentiable: the tangent vectors are lost */
+  size_t obstacle;         /* that has lost them */
+} carried;
 
 struct ric_trajectory {
   const ric_system *system;
@@ -42,6 +58,7 @@ struct ric_trajectory {
   coming_rest *coming; /* in no order */
   size_t coming_count, coming_capacity;
   double *rates, *shifted; /* [n + m] work */
+  carried carried;
 
   const ric_observer *observer; /* of the run going on; NULL: none */
   ric_run *run;
@@ -82,6 +99,22 @@ ric_status contacts_keep_on(ric_trajectory *tr, bool *moved, ric_error *error);
 
 /** Second derivative of a gap in the present state, with its own contact open. */
 ric_status gap_acceleration(ric_trajectory *tr, size_t obstacle, double *acceleration, ric_error *error);
+
+/** Before contacts meet: remembers what tangent vectors need. Does nothing when none are carried; nor do the next. */
+void carried_mark(ric_trajectory *tr);
+
+/** A contact has been touched so that tangent vectors have no way on. */
+void carried_lose(ric_trajectory *tr, size_t obstacle, ric_saltation_kind kind);
+
+/** After the contacts have met: takes tangent vectors through the first `hits` of tr->impacts. */
+ric_status carried_meet(ric_trajectory *tr, size_t hits, ric_error *error);
+
+/** A contact persists from the start on, and holds the tangent vectors. */
+void carried_hold(ric_trajectory *tr, size_t obstacle);
+void carried_clear(carried *c);
+
+/** Tangent vectors that are lost are carried no more. @param reason  text of why, set */
+ric_status carried_end(ric_trajectory *tr, char *reason, size_t room, ric_error *error);
 
 /** Finds the impacts of tr->impacts [count] whose series accumulates soon, and sets their `accumulation`: the time from
  *  now, NaN for all others. @param hits  how many of them are new, the first ones; the others persist */

@@ -68,6 +68,16 @@ const char *obstacle_gap(const ric_system *s, size_t obstacle, double t, const d
   return NULL;
 }
 
+const char *obstacle_gap_derivative(const ric_system *s, size_t obstacle, double t, const double *q, const tangents *d,
+                                    double *derivative) {
+  (void)t;
+  (void)q;
+  const ric_obstacle *o = &s->obstacles[obstacle];
+  for (size_t k = 0; k < d->columns; k++)
+    derivative[k] = o->side * d->q[o->coordinate * d->columns + k];
+  return NULL;
+}
+
 const char *obstacle_gap_rate(const ric_system *s, size_t obstacle, double t, const double *q, const double *u,
                               double *rate) {
   (void)t;
@@ -104,6 +114,10 @@ size_t system_first_obstacle(const ric_system *s, size_t coordinate) {
 
 double hertz_force(double stiffness, double gap) {
   return gap < 0 ? stiffness * -gap * sqrt(-gap) : 0; /* [JAP] Hertz */
+}
+
+double hertz_stiffness(double stiffness, double gap) {
+  return gap < 0 ? 1.5 * stiffness * sqrt(-gap) : 0;
 }
 
 double hertz_energy(double stiffness, double gap) {

@@ -72,8 +72,15 @@ static void destroy(ric_system *system) {
   free(s);
 }
 
+static const char *gap_derivative(const ric_system *system, size_t obstacle, double t, const double *q,
+                                  const tangents *d, double *derivative) {
+  const first_order *s = (const first_order *)system;
+  return user_gap_derivative(&s->gap, obstacle, t, q, d, s->gradient, derivative);
+}
+
 static const system_model model_table = {.rate = rate,
                                          .gap = gap,
+                                         .gap_derivative = gap_derivative,
                                          .gap_rate = first_order_gap_rate,
                                          .gap_acceleration = first_order_gap_acceleration,
                                          .impact = impact,

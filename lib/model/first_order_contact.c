@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "first_order.h"
+#include "path_derivative.h"
 #include "user_callback.h"
 
 static const double path_step = 1.0 / 512;  /* largest shift of a state in the derivative of a gap rate */
@@ -43,7 +44,7 @@ static const char *gap_rate_on(void *user, double step, double *rate) {
 static const char *gap_rate_along(const first_order *s, size_t obstacle, double t, double time_rate, const double *x,
                                   const double *x_rate, double *slope) {
   state_path path = {s, obstacle, t, time_rate, x, x_rate};
-  return path_derivative(gap_rate_on, &path, path_step / fmax(1, largest(x_rate, s->model.states)), slope);
+  return path_derivative(gap_rate_on, &path, path_step / fmax(1, largest(x_rate, s->model.states)), 1, slope, NULL);
 }
 
 const char *first_order_gap_acceleration(const ric_system *system, size_t obstacle, double t, const double *x,

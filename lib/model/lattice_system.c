@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "lattice_force.h"
+#include "lattice_tangent.h"
 
 typedef struct lattice_system {
   ric_system base;
@@ -43,6 +44,29 @@ static const char *rate(const ric_system *s, const unsigned char *contact, doubl
   for (size_t i = 0; i < n; i++)
     if (!isfinite(u_rate[i]))
       return "an acceleration is not finite";
+  return NULL;
+}
+
+static const char *tangent(const ric_system *s, const unsigned char *contact, double t, const double *q,
+                           const double *u, const tangents *d, const tangents *d_rate) {
+  (void)t;
+  (void)u; /* no force depends on speeds and on anything else at once */
+  const ric_lattice *lattice = lattice_system_lattice(s);
+  size_t columns = d->columns, row = columns * sizeof *d->q;
+  memmove(d_rate->q, d->u, s->coordinates * row);
+  lattice_tangent(lattice, q, d, d_rate->u);
+  for (size_t j = 0; j < s->obstacle_count; j++) {
+    const ric_obstacle *o = &s->obstacles[j];
+    size_t i = o->coordinate;
+    double stiffness = presses(o, contact, j) ? hertz_stiffness(o->stiffness, ric_obstacle_gap(o, q[i])) : 0;
+    for (size_t k = 0; stiffness != 0 && k < columns; k++)
+      d_rate->u[i * columns + k] -= stiffness / ric_lattice_mass(lattice, i) * d->q[i * columns + k];
+  }
+  for (size_t j = 0; contact && j < s->obstacle_count; j++)
+    if (contact[j] == CONTACT_HELD) {
+      memset(d_rate->q + s->obstacles[j].coordinate * columns, 0, row);
+      memset(d_rate->u + s->obstacles[j].coordinate * columns, 0, row);
+    }
   return NULL;
 }
 
@@ -97,7 +121,9 @@ static void destroy(ric_system *system) {
 }
 
 static const system_model model = {.rate = rate,
+                                   .tangent = tangent,
                                    .gap = obstacle_gap,
+                                   .gap_derivative = obstacle_gap_derivative,
                                    .gap_rate = obstacle_gap_rate,
                                    .gap_acceleration = obstacle_gap_acceleration,
                                    .direction = direction,

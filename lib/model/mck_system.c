@@ -6,6 +6,7 @@
 
 #include "mck_hold.h"
 #include "mck_mass.h"
+#include "mck_tangent.h"
 
 double mck_mobility(const mck_system *s, size_t i) {
   return s->inverse[s->base.uncoupled ? i : i * s->base.coordinates + i];
@@ -175,7 +176,9 @@ static void mck_destroy(ric_system *base) {
 }
 
 static const system_model mck_model = {.rate = mck_rate,
+                                       .tangent = mck_tangent,
                                        .gap = obstacle_gap,
+                                       .gap_derivative = obstacle_gap_derivative,
                                        .gap_rate = obstacle_gap_rate,
                                        .gap_acceleration = obstacle_gap_acceleration,
                                        .direction = mck_direction,

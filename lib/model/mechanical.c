@@ -122,8 +122,15 @@ static void destroy(ric_system *system) {
   free(s);
 }
 
+static const char *gap_derivative(const ric_system *system, size_t obstacle, double t, const double *q,
+                                  const tangents *d, double *derivative) {
+  const mechanical *s = (const mechanical *)system;
+  return user_gap_derivative(&s->gap, obstacle, t, q, d, s->gradient, derivative);
+}
+
 static const system_model table = {.rate = rate,
                                    .gap = gap,
+                                   .gap_derivative = gap_derivative,
                                    .gap_rate = mechanical_gap_rate,
                                    .gap_acceleration = mechanical_gap_acceleration,
                                    .direction = direction,

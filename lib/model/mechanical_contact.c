@@ -4,6 +4,7 @@
 
 #include "cholesky.h"
 #include "mechanical.h"
+#include "path_derivative.h"
 #include "user_callback.h"
 
 /* Step in time of the derivative of a gap rate, for coordinates that move by at most it. */
@@ -49,7 +50,7 @@ const char *mechanical_gap_acceleration(const ric_system *system, size_t obstacl
   const mechanical *s = (const mechanical *)system;
   motion_path path = {s, obstacle, t, q, u, q_rate, u_rate};
   double step = path_step / fmax(1, largest(q_rate, s->model.coordinates));
-  return path_derivative(gap_rate_on, &path, step, acceleration);
+  return path_derivative(gap_rate_on, &path, step, 1, acceleration, NULL);
 }
 
 /* g and w = M^-1 g of contact k of the list, and its row of g^T M^-1 g. */

@@ -25,12 +25,24 @@ typedef struct contact_direction {
   double offset;
 } contact_direction;
 
+/** Tangent vectors of a state, side by side: q [coordinates][columns], u [speeds][columns], row-major. */
+typedef struct tangents {
+  size_t columns;
+  double *q, *u;
+} tangents;
+
 typedef struct system_model {
   /** Rates with the forces of contacts in the given states ([obstacles]; NULL: all open, Hertz by the sign of its gap).
    */
   const char *(*rate)(const ric_system *s, const unsigned char *contact, double t, const double *q, const double *u,
                       double *q_rate, double *u_rate);
+  /** Derivatives of `rate` along tangent vectors, contacts in the given states. NULL: differences (tangent.h). */
+  const char *(*tangent)(const ric_system *s, const unsigned char *contact, double t, const double *q, const double *u,
+                         const tangents *d, const tangents *d_rate);
   const char *(*gap)(const ric_system *s, size_t obstacle, double t, const double *q, double *gap);
+  /** Derivatives [columns] of a gap, time standing still, along tangent vectors. */
+  const char *(*gap_derivative)(const ric_system *s, size_t obstacle, double t, const double *q, const tangents *d,
+                                double *derivative);
   const char *(*gap_rate)(const ric_system *s, size_t obstacle, double t, const double *q, const double *u,
                           double *rate);
   /** Second derivative of the gap along a motion with these rates of change. */
@@ -74,6 +86,8 @@ ric_status system_check_room(const ric_system *s, ric_error *error);
 
 /** Functions of the table for obstacles at coordinates: shared by lattices and M-C-K systems. */
 const char *obstacle_gap(const ric_system *s, size_t obstacle, double t, const double *q, double *gap);
+const char *obstacle_gap_derivative(const ric_system *s, size_t obstacle, double t, const double *q, const tangents *d,
+                                    double *derivative);
 const char *obstacle_gap_rate(const ric_system *s, size_t obstacle, double t, const double *q, const double *u,
                               double *rate);
 const char *obstacle_gap_acceleration(const ric_system *s, size_t obstacle, double t, const double *q, const double *u,
@@ -88,8 +102,9 @@ size_t system_first_obstacle(const ric_system *s, size_t coordinate);
 const char *system_list_held(const ric_system *s, const unsigned char *contact, size_t most, size_t *held,
                              size_t *count);
 
-/** Hertz's force k max(0, -gap)^{3/2}, and its potential. */
+/** Hertz's force k max(0, -gap)^{3/2}, minus its derivative in the gap, and its potential. */
 double hertz_force(double stiffness, double gap);
+double hertz_stiffness(double stiffness, double gap);
 double hertz_energy(double stiffness, double gap);
 
 #endif

@@ -21,16 +21,3 @@ double largest(const double *x, size_t count) {
     most = fmax(most, fabs(x[i]));
   return most;
 }
-
-const char *path_derivative(const char *(*value)(void *path, double s, double *value), void *path, double step,
-                            double *derivative) {
-  double slope[2];
-  for (int k = 0; k < 2; k++, step /= 2) {
-    double above, below;
-    TRY_TEXT(value(path, step, &above));
-    TRY_TEXT(value(path, -step, &below));
-    slope[k] = (above - below) / (2 * step);
-  }
-  *derivative = slope[1] + (slope[1] - slope[0]) / 3;
-  return NULL;
-}

@@ -1,4 +1,4 @@
-/* Callbacks of user systems: what their answers are checked for, and derivatives along a path by differences. */
+/* Callbacks of user systems: what their answers are checked for. */
 #ifndef RICOCHET_USER_CALLBACK_H
 #define RICOCHET_USER_CALLBACK_H
 
@@ -23,10 +23,5 @@ bool all_finite(const double *x, size_t count);
 
 /** Largest absolute value of x [count]; 0 for none. */
 double largest(const double *x, size_t count);
-
-/** Derivative at s = 0 of a function of one variable: central differences with steps `step` and half of it, Richardson
- *  extrapolated, error step^4 / 480 times the fifth derivative. Four calls; the value at 0 is not asked for. */
-const char *path_derivative(const char *(*value)(void *path, double s, double *value), void *path, double step,
-                            double *derivative);
 
 #endif

@@ -46,3 +46,14 @@ const char *user_gap_gradient(const user_gap *g, size_t obstacle, double t, cons
     TRY_TEXT(extrapolated_slope(g, obstacle, &time, &g->point[i], &gradient[i]));
   return extrapolated_slope(g, obstacle, &time, &time, in_time);
 }
+
+const char *user_gap_derivative(const user_gap *g, size_t obstacle, double t, const double *q, const tangents *d,
+                                double *gradient, double *derivative) {
+  double in_time;
+  TRY_TEXT(user_gap_gradient(g, obstacle, t, q, gradient, &in_time));
+  memset(derivative, 0, d->columns * sizeof *derivative);
+  for (size_t i = 0; i < g->coordinates; i++)
+    for (size_t k = 0; k < d->columns; k++)
+      derivative[k] += gradient[i] * d->q[i * d->columns + k];
+  return NULL;
+}

@@ -2,7 +2,7 @@
 #ifndef RICOCHET_USER_GAP_H
 #define RICOCHET_USER_GAP_H
 
-#include <stddef.h>
+#include "system_model.h"
 
 typedef struct user_gap {
   size_t coordinates;
@@ -17,5 +17,9 @@ const char *user_gap_value(const user_gap *g, size_t obstacle, double t, const d
 /** Gradient [coordinates] in q and the derivative in t; by differences where there is no callback. */
 const char *user_gap_gradient(const user_gap *g, size_t obstacle, double t, const double *q, double *gradient,
                               double *in_time);
+
+/** Derivatives [columns] of a gap along tangent vectors. @param gradient  [coordinates] work */
+const char *user_gap_derivative(const user_gap *g, size_t obstacle, double t, const double *q, const tangents *d,
+                                double *gradient, double *derivative);
 
 #endif

@@ -70,6 +70,17 @@ RIC_API double ric_flow_step_end(const ric_flow *flow); /* time at the end of th
 RIC_API const double *ric_flow_q(const ric_flow *flow); /* [n], valid until the next step, accept or start */
 RIC_API const double *ric_flow_u(const ric_flow *flow); /* [m] */
 
+/** Tangent vectors that move along with the state from now on: for a state x(t; p) that depends on parameters p, the
+ *  columns of dx/dp. They follow the linearised motion, contacts in their present states; jumps at impacts are for
+ *  trajectories to make. With taylor by the recurrence of the state, O(n) per column and step on a lattice; with cvodes
+ *  by its forward sensitivity analysis, at the tolerance of the flow. ric_flow_start ends it.
+ *  @param dq, du  [n][columns], [m][columns] row-major, copied; du NULL where m = 0; columns 0: none any more
+ *  @returns RIC_EINVAL for values that are not finite, RIC_ENOMEM. */
+RIC_API ric_status ric_flow_carry(ric_flow *flow, size_t columns, const double *dq, const double *du, ric_error *error);
+RIC_API size_t ric_flow_columns(const ric_flow *flow);
+RIC_API const double *ric_flow_dq(const ric_flow *flow); /* [n][columns], valid until the next accept, carry or start */
+RIC_API const double *ric_flow_du(const ric_flow *flow); /* [m][columns] */
+
 /** What the flow has done since it was made. */
 typedef struct ric_flow_counts {
   unsigned long long steps;

@@ -21,7 +21,9 @@
   X(RIC_RUN_BLOW_UP, "blow_up")         /* the state grows beyond bounds, or steps shrink to nothing */                \
   X(RIC_RUN_UNRESOLVED, "unresolved")   /* a gap or a contact force varies too fast for the steps */                   \
   X(RIC_RUN_CALLBACK_FAILED, "callback_failed")                                                                        \
-  X(RIC_RUN_ENDED, "ended") /* the observer asked for the end */
+  X(RIC_RUN_ENDED, "ended")                           /* the observer asked for the end */                             \
+  X(RIC_RUN_GRAZING, "grazing")                       /* tangent vectors have no way through a contact that grazes */  \
+  X(RIC_RUN_NOT_DIFFERENTIABLE, "not_differentiable") /* nor through impacts whose order matters */
 
 typedef enum ric_run_outcome {
 #define X(name, text) name,
@@ -100,6 +102,19 @@ RIC_API const double *ric_trajectory_u(const ric_trajectory *trajectory); /* [m]
 
 /** Whether an obstacle's contact persists now. */
 RIC_API int ric_trajectory_rests(const ric_trajectory *trajectory, size_t obstacle);
+
+/** Tangent vectors that move along with the state from now on, between contacts as ric_flow_carry says, through impacts
+ *  by their saltation (saltation.h). Contacts that persist hold them, too. A run that meets a contact through which
+ * they have no way, one that grazes or impacts whose order matters, ends there with an outcome that says so, after the
+ *  impact; they are lost, and a further run goes on without them. Call it between start and run, or between runs;
+ *  ric_trajectory_start ends it.
+ *  @param dq, du  [n][columns], [m][columns] row-major, copied; du NULL where m = 0; columns 0: none any more
+ *  @returns RIC_EINVAL for values that are not finite, or without a start; RIC_ENOMEM. */
+RIC_API ric_status ric_trajectory_carry(ric_trajectory *trajectory, size_t columns, const double *dq, const double *du,
+                                        ric_error *error);
+RIC_API size_t ric_trajectory_columns(const ric_trajectory *trajectory);   /* 0 when they were lost */
+RIC_API const double *ric_trajectory_dq(const ric_trajectory *trajectory); /* [n][columns], until the next call */
+RIC_API const double *ric_trajectory_du(const ric_trajectory *trajectory); /* [m][columns] */
 
 /** States at given times, filled in as a run goes: hand ric_sampler_segment to the run as the observer's segment
  *  callback with the sampler as its user, or call it from your own. */

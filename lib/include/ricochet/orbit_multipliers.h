@@ -1,0 +1,91 @@
+/* Multipliers of the orbits of a chain, and the parameters at which their families lose stability.
+ *
+ * The orbits (orbit.h) are conservative and even about t = 0 and t = T/2. Three methods find their multipliers.
+ *
+ *   reduced: n x n. The orbit is even, so M is reversible, R M R = M^-1 with a reflection R, and (M + M^-1) / 2 acts on
+ *   the states that R leaves alone. That is an n x n block of M, with the eigenvalues alpha = (mu + 1/mu) / 2: pairs
+ *   (mu, 1/mu) are one number, the double 1 is a simple alpha = 1, multipliers on the circle are alpha in [-1, 1].
+ *
+ *   monodromy: 2n x 2n, from an event-driven run with 2n tangent vectors. Knows nothing of the orbit but its state.
+ *
+ *   determinant: O(n m) memory for m impacts. M = D (I + X Y^T) with the free flow D, diagonal in the modes, and X, Y
+ *   of width 2m; mu is a multiplier where
+ *
+ *     f(mu) = det(I - Y^T (mu - D)^-1 D X) = 0,
+ *
+ *   or an eigenvalue of D whose modes vanish at the impacts. The argument principle counts the zeros outside the
+ *   circle; Newton's method finds them. */
+#ifndef RICOCHET_ORBIT_MULTIPLIERS_H
+#define RICOCHET_ORBIT_MULTIPLIERS_H
+
+#include "multipliers.h"
+#include "orbit.h"
+
+typedef enum ric_multiplier_method {
+  RIC_MULTIPLIERS_AUTO, /* reduced up to RIC_REDUCED_PARTICLES, determinant beyond */
+  RIC_MULTIPLIERS_REDUCED,
+  RIC_MULTIPLIERS_MONODROMY,
+  RIC_MULTIPLIERS_DETERMINANT
+} ric_multiplier_method;
+
+enum { RIC_REDUCED_PARTICLES = 400 };
+
+typedef struct ric_orbit_multiplier_options {
+  ric_multiplier_method method;
+  ric_multiplier_options judge;
+  bool on_circle; /* determinant: find all multipliers on the circle, too; off by default */
+  ric_poll poll;
+} ric_orbit_multiplier_options;
+
+RIC_API ric_orbit_multiplier_options ric_orbit_multiplier_options_default(void);
+
+/** Multipliers of a solved orbit of a chain.
+ *  @param solver  the one that solved it: gives the modes, and keeps the workspace
+ *  @param multipliers  initialised for 2n
+ *  @returns RIC_EINVAL for arguments that do not belong together; RIC_ELIMIT for the reduced and monodromy methods
+ *           beyond RIC_REDUCED_PARTICLES; RIC_ENOMEM, RIC_ESTOPPED. Orbits without a state and orbits that graze are
+ *           `unknown`. */
+RIC_API ric_status ric_orbit_multipliers(ric_orbit_solver *solver, const ric_chain *chain, const ric_pattern *pattern,
+                                         const ric_orbit *orbit, const ric_orbit_multiplier_options *options,
+                                         ric_multipliers *multipliers, ric_error *error);
+
+/** How a family loses or regains stability. */
+#define RIC_CRITICAL_LIST(X)                                                                                           \
+  X(RIC_CRITICAL_PLUS_ONE, "plus_one")   /* a pair meets at +1 and leaves along the real axis */                       \
+  X(RIC_CRITICAL_MINUS_ONE, "minus_one") /* the same at -1 */                                                          \
+  X(RIC_CRITICAL_COLLISION, "collision") /* two pairs meet on the circle and leave it as a quadruple */
+
+typedef enum ric_critical_kind {
+#define X(name, text) name,
+  RIC_CRITICAL_LIST(X)
+#undef X
+      RIC_CRITICAL_KINDS
+} ric_critical_kind;
+
+RIC_API const char *ric_critical_name(ric_critical_kind kind);
+
+/** A parameter at which multipliers leave the circle or come back. */
+typedef struct ric_critical {
+  ric_critical_kind kind;
+  double parameter;
+  ric_complex mu;     /* where on the circle, with im >= 0 */
+  bool outwards;      /* the number outside grows with the parameter */
+  double uncertainty; /* half the width of the last bracket */
+} ric_critical;
+
+/** Critical parameters of the orbits of a pattern in (low, high), by the reduced method; increasing.
+ *
+ *  Orbits are solved on a grid of `points` values; where the number of multipliers outside changes between neighbours,
+ *  the place is bracketed by it, then refined to 1e-10 on a function that is smooth there: the distance of alpha from
+ *  +1 (the trivial one taken out) or -1, or the discriminant (alpha_a - alpha_b)^2 of the two that meet. Two changes
+ *  between neighbours of the grid that undo each other are not seen. Parameters at which there is no orbit end an
+ *  interval.
+ *  @param along  which parameter; gamma at the given period, or the period at the chain's gamma
+ *  @param found  [capacity]; @param count  set to their number, also beyond the capacity
+ *  @returns RIC_EINVAL for a range or points < 2; as ric_orbit_solve and ric_orbit_multipliers. */
+RIC_API ric_status ric_orbit_critical_points(ric_orbit_solver *solver, const ric_chain *chain,
+                                             const ric_pattern *pattern, ric_along along, double period, double low,
+                                             double high, size_t points, ric_critical *found, size_t capacity,
+                                             size_t *count, ric_error *error);
+
+#endif
