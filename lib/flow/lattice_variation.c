@@ -20,24 +20,68 @@ RIC_INLINE void close_ring(const lattice_variation *v, double *c, size_t lanes) 
   memcpy(c + (v->n + 1) * lanes, c + lanes, lanes * sizeof *c);
 }
 
-/* next = scale (own, left, right) c */
-RIC_INLINE void set_stencil(const stencil *s, const double *restrict c, double *restrict next, size_t n, double scale,
-                            size_t lanes) {
-  for (size_t i = 0; i < n; i++) {
-    double own = scale * s->own[i], left = scale * s->left[i], right = scale * s->right[i];
-    const double *here = c + (i + 1) * lanes;
+/* One row of a stencil times a scale. */
+typedef struct weights {
+  double own, left, right;
+} weights;
+
+RIC_INLINE weights weights_of(const stencil *s, size_t i, double scale) {
+  return (weights){scale * s->own[i], scale * s->left[i], scale * s->right[i]};
+}
+
+/* Loops over lanes read all before they write: so they become vector instructions. */
+RIC_INLINE void weigh(weights w, const double *c, double *value, size_t lanes) {
+  for (size_t k = 0; k < lanes; k++)
+    value[k] = w.own * c[k] + (w.left * *(c + k - lanes) + w.right * c[k + lanes]);
+}
+
+RIC_INLINE void add(const double *value, double *sum, size_t lanes) {
+  double old[LANES];
+  for (size_t k = 0; k < lanes; k++)
+    old[k] = sum[k] + value[k];
+  for (size_t k = 0; k < lanes; k++)
+    sum[k] = old[k];
+}
+
+/* Level j + 2 of the constant part. */
+RIC_INLINE void set_level(const lattice_variation *v, int j, size_t lanes) {
+  const double *restrict c = level(v, j) + lanes, *restrict d = level(v, j + 1) + lanes;
+  double *restrict next = level(v, j + 2) + lanes, h = v->length, scale = h * h / ((j + 1) * (j + 2));
+  for (size_t i = 0; i < v->n; i++) {
+    double value[LANES], damping[LANES];
+    weigh(weights_of(&v->springs, i, scale), c + i * lanes, value, lanes);
+    if (v->damped) {
+      weigh(weights_of(&v->dampers, i, scale * (j + 1) / h), d + i * lanes, damping, lanes);
+      add(damping, value, lanes);
+    }
     for (size_t k = 0; k < lanes; k++)
-      next[(i + 1) * lanes + k] = own * here[k] + (left * (here - lanes)[k] + right * here[lanes + k]);
+      next[i * lanes + k] = value[k];
   }
 }
 
-RIC_INLINE void add_stencil(const stencil *s, const double *restrict c, double *restrict next, size_t n, double scale,
-                            size_t lanes) {
-  for (size_t i = 0; i < n; i++) {
-    double own = scale * s->own[i], left = scale * s->left[i], right = scale * s->right[i];
-    const double *here = c + (i + 1) * lanes;
+RIC_INLINE void add_up(const lattice_variation *v, int j, size_t lanes) {
+  const double *restrict c = level(v, j) + lanes;
+  double *restrict q = v->sum_q, *restrict u = v->sum_u, factor = j;
+  for (size_t i = 0; i < v->n * lanes; i++) {
+    q[i] += c[i];
+    u[i] += factor * c[i];
+  }
+}
+
+/* Both in one pass, where nothing else adds to the level. */
+RIC_INLINE void set_and_add_up(const lattice_variation *v, int j, size_t lanes) {
+  const double *restrict c = level(v, j) + lanes;
+  double *restrict next = level(v, j + 2) + lanes, *restrict q = v->sum_q, *restrict u = v->sum_u;
+  double scale = v->length * v->length / ((j + 1) * (j + 2)), factor = j + 2;
+  for (size_t i = 0; i < v->n; i++) {
+    double value[LANES], slope[LANES];
+    weigh(weights_of(&v->springs, i, scale), c + i * lanes, value, lanes);
     for (size_t k = 0; k < lanes; k++)
-      next[(i + 1) * lanes + k] += own * here[k] + (left * (here - lanes)[k] + right * here[lanes + k]);
+      next[i * lanes + k] = value[k];
+    for (size_t k = 0; k < lanes; k++)
+      slope[k] = factor * value[k];
+    add(value, q + i * lanes, lanes);
+    add(slope, u + i * lanes, lanes);
   }
 }
 
@@ -45,31 +89,31 @@ RIC_INLINE void add_stencil(const stencil *s, const double *restrict c, double *
 RIC_INLINE void add_varying(const lattice_variation *v, const double *site, const double *link,
                             const double *restrict c, double *restrict next, double scale, size_t lanes) {
   for (size_t i = 0; i < v->n; i++) {
-    double w = scale * v->inverse_mass[i], left = w * link[i], right = w * link[i + 1];
-    double own = -(w * site[i] + left + right);
-    const double *here = c + (i + 1) * lanes;
-    for (size_t k = 0; k < lanes; k++)
-      next[(i + 1) * lanes + k] += own * here[k] + (left * (here - lanes)[k] + right * here[lanes + k]);
+    double value[LANES], w = scale * v->inverse_mass[i], left = w * link[i], right = w * link[i + 1];
+    weigh((weights){-(w * site[i] + left + right), left, right}, c + (i + 1) * lanes, value, lanes);
+    add(value, next + (i + 1) * lanes, lanes);
   }
 }
 
-RIC_INLINE void raise_lanes(lattice_variation *v, size_t lanes) {
-  size_t n = v->n, size = n * lanes;
-  double h = v->length;
+/* Level j + 2 with all that acts. */
+RIC_INLINE void raise_level(const lattice_variation *v, int j, size_t lanes) {
+  double *next = level(v, j + 2), scale = v->length * v->length / ((j + 1) * (j + 2));
+  set_level(v, j, lanes);
+  for (int l = 0; l <= j && v->varies; l++)
+    add_varying(v, v->site + (size_t)l * v->n, v->link + (size_t)l * (v->n + 1), level(v, j - l), next, scale, lanes);
+  for (size_t i = 0; i < v->held_count; i++)
+    memset(next + (v->held[i] + 1) * lanes, 0, lanes * sizeof *next);
+  add_up(v, j + 2, lanes);
+}
+
+RIC_INLINE void raise_lanes(const lattice_variation *v, size_t lanes) {
+  bool plain = !v->damped && !v->varies && v->held_count == 0;
   for (int j = 0; j + 2 <= v->order; j++) {
-    double *next = level(v, j + 2), scale = h * h / ((j + 1) * (j + 2));
-    set_stencil(&v->springs, level(v, j), next, n, scale, lanes);
-    if (v->damped)
-      add_stencil(&v->dampers, level(v, j + 1), next, n, scale * (j + 1) / h, lanes);
-    for (int l = 0; l <= j && v->varies; l++)
-      add_varying(v, v->site + (size_t)l * n, v->link + (size_t)l * (n + 1), level(v, j - l), next, scale, lanes);
-    for (size_t i = 0; i < v->held_count; i++)
-      memset(next + (v->held[i] + 1) * lanes, 0, lanes * sizeof *next);
-    close_ring(v, next, lanes);
-    for (size_t i = 0; i < size; i++)
-      v->sum_q[i] += next[lanes + i];
-    for (size_t i = 0; i < size; i++)
-      v->sum_u[i] += (j + 2) * next[lanes + i];
+    if (plain)
+      set_and_add_up(v, j, lanes);
+    else
+      raise_level(v, j, lanes);
+    close_ring(v, level(v, j + 2), lanes);
   }
 }
 
