@@ -7,10 +7,9 @@
 #include "ricochet/verify.h"
 #include "solver.h"
 
-/* What a run needs: the chain's obstacles, the state at T/4, the impacts that follow it. */
+/* What a run needs: the chain's system, the state at T/4, the impacts that follow it. */
 typedef struct task {
   ric_system *system;
-  ric_obstacle *obstacles;
   size_t *obstacle_of; /* [n] */
   ric_promise *promises;
   double *q, *v;
@@ -18,7 +17,6 @@ typedef struct task {
 
 static void task_clear(task *t) {
   ric_system_destroy(&t->system);
-  free(t->obstacles);
   free(t->obstacle_of);
   free(t->promises);
   free(t->q);
@@ -26,27 +24,20 @@ static void task_clear(task *t) {
 }
 
 static ric_status task_init(task *t, size_t n, size_t impacts, ric_error *error) {
-  *t = (task){.obstacles = malloc(n * sizeof *t->obstacles),
-              .obstacle_of = malloc(n * sizeof *t->obstacle_of),
+  *t = (task){.obstacle_of = malloc(n * sizeof *t->obstacle_of),
               .promises = malloc(impacts * sizeof *t->promises),
               .q = malloc(n * sizeof *t->q),
               .v = malloc(n * sizeof *t->v)};
-  if (t->obstacles && t->obstacle_of && t->promises && t->q && t->v)
+  if (t->obstacle_of && t->promises && t->q && t->v)
     return RIC_OK;
   return ric_fail(error, RIC_ENOMEM, "no memory to verify an orbit of %zu particles", n);
 }
 
-static ric_status make_system(task *t, const ric_chain *chain, ric_error *error) {
-  ric_lattice lattice = ric_lattice_of_chain(chain);
+/* Obstacles of a chain's system are the particles with a floor, in order. */
+static void find_obstacles(task *t, const ric_chain *chain) {
   size_t count = 0;
-  for (size_t i = 0; i < chain->particles; i++) {
-    t->obstacle_of[i] = SIZE_MAX;
-    if (ric_chain_floor(chain, i) == -INFINITY)
-      continue;
-    t->obstacle_of[i] = count;
-    t->obstacles[count++] = ric_obstacle_floor(i, ric_chain_floor(chain, i));
-  }
-  return ric_system_create_lattice(&lattice, t->obstacles, count, &t->system, error);
+  for (size_t i = 0; i < chain->particles; i++)
+    t->obstacle_of[i] = ric_chain_floor(chain, i) > -INFINITY ? count++ : SIZE_MAX;
 }
 
 static void make_promises(task *t, const ric_pattern *pattern, double period) {
@@ -62,7 +53,8 @@ static ric_status verify(task *t, ric_orbit_solver *solver, const ric_chain *cha
                          ric_error *error) {
   double quarter = orbit->period / 4;
   RIC_TRY(ric_orbit_states(solver, chain, orbit, &quarter, 1, t->q, t->v, error));
-  RIC_TRY(make_system(t, chain, error));
+  RIC_TRY(ric_system_create_chain(chain, &t->system, error));
+  find_obstacles(t, chain);
   make_promises(t, pattern, orbit->period);
   return ric_verify(t->system, quarter, t->q, t->v, orbit->period, t->promises, ric_pattern_impacts(pattern), options,
                     verification, error);

@@ -11,8 +11,9 @@ ROOMS = ["model", "flow", "impact", "orbit", "branch", "grazing", "attractor"]
 PUBLIC = {  # public headers by room
     "model": {"chain", "resonance", "obstacle", "lattice", "mck", "user_system", "system"},
     "flow": {"polynomial", "segment", "flow"},
-    "impact": {"event", "trajectory"},
-    "orbit": {"pattern", "orbit", "verify"},
+    "impact": {"event", "trajectory", "saltation"},
+    "orbit": {"pattern", "orbit", "verify", "monodromy", "multipliers", "orbit_multipliers"},
+    "attractor": {"lyapunov"},
 }
 BASE = {"status", "export", "version"}
 UMBRELLA = "ricochet.h"

@@ -47,8 +47,8 @@ RIC_API const char *ric_saltation_name(ric_saltation_kind kind);
  *            comes in any more. Untouched when grazing
  *  @param S_reverse  the same in reverse order; NULL: not wanted
  *  @param kind  set; the matrices of the two orders count as equal within 1e-9 of their size
- *  @returns RIC_EINVAL for an unknown or compliant obstacle or a gap rate >= 0; RIC_ELIMIT when coupled contacts do not come apart;
- *           RIC_ECALLBACK, RIC_ENOMEM. */
+ *  @returns RIC_EINVAL for an unknown or compliant obstacle or a gap rate >= 0; RIC_ELIMIT when coupled contacts do not
+ * come apart; RIC_ECALLBACK, RIC_ENOMEM. */
 RIC_API ric_status ric_saltation_find(const ric_system *system, double t, const double *q, const double *u,
                                       const size_t *obstacles, size_t count, double grazing_tol, double *S,
                                       double *S_reverse, ric_saltation_kind *kind, ric_error *error);

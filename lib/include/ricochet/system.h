@@ -25,6 +25,8 @@ RIC_API ric_status ric_system_create_mck(const ric_mck *mck, const ric_obstacle 
                                          ric_system **system, ric_error *error);
 RIC_API ric_status ric_system_create_mechanical(const ric_mechanical *model, ric_system **system, ric_error *error);
 RIC_API ric_status ric_system_create_first_order(const ric_first_order *model, ric_system **system, ric_error *error);
+/** The lattice of a chain with its floors: obstacles are the particles that have one, in order, with restitution 1. */
+RIC_API ric_status ric_system_create_chain(const ric_chain *chain, ric_system **system, ric_error *error);
 RIC_API void ric_system_destroy(ric_system **system);
 
 RIC_API size_t ric_system_coordinates(const ric_system *system); /* n */

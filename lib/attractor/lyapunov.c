@@ -1,0 +1,133 @@
+#include "ricochet/lyapunov.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "impact/trajectory_state.h"
+#include "model/system_model.h"
+#include "orthonormal.h"
+
+ric_lyapunov_options ric_lyapunov_options_default(void) {
+  return (ric_lyapunov_options){.interval = 1};
+}
+
+/* A run on its way. */
+typedef struct course {
+  ric_trajectory *trajectory;
+  const ric_lyapunov_options *options;
+  size_t n, size, count;
+  double *vectors; /* [size][count] */
+  double *growth;  /* [count] logarithms of R's diagonal of one interval */
+  double *sum;     /* [count] of them all */
+  double begin;    /* time at which the sums begin */
+  orthonormal_work work;
+  ric_lyapunov *result;
+} course;
+
+static ric_status check(const ric_lyapunov_options *o, size_t size, ric_error *error) {
+  if (o->count > size)
+    return ric_fail(error, RIC_EINVAL, "count = %zu, expected at most %zu exponents (or 0: all)", o->count, size);
+  if (!(o->interval > 0))
+    return ric_fail(error, RIC_EINVAL, "interval = %g, expected > 0", o->interval);
+  if (!(o->transient >= 0 && o->transient < INFINITY))
+    return ric_fail(error, RIC_EINVAL, "transient = %g, expected a finite number >= 0", o->transient);
+  return RIC_OK;
+}
+
+static ric_status set_up(course *c, ric_error *error) {
+  c->vectors = calloc(c->size * c->count, sizeof *c->vectors);
+  c->growth = calloc(2 * c->count, sizeof *c->growth);
+  if (!c->vectors || !c->growth)
+    return ric_fail(error, RIC_ENOMEM, "no memory for %zu tangent vectors of %zu numbers", c->count, c->size);
+  c->sum = c->growth + c->count;
+  for (size_t k = 0; k < c->count; k++)
+    c->vectors[k * c->count + k] = 1;
+  return orthonormal_init(&c->work, c->size, c->count, error);
+}
+
+static void tear_down(course *c) {
+  free(c->vectors);
+  free(c->growth);
+  orthonormal_clear(&c->work);
+}
+
+static double time_now(const course *c) {
+  return ric_trajectory_time(c->trajectory);
+}
+
+/* Adds the counts of a part of the run to those of the whole. */
+static void join(ric_run *whole, const ric_run *part) {
+  ric_run before = *whole;
+  *whole = *part;
+  for (int k = 0; k < RIC_EVENT_KINDS; k++)
+    whole->events[k] += before.events[k];
+  whole->energy_start = before.energy_start;
+  whole->impact_loss += before.impact_loss;
+  whole->flow.steps += before.flow.steps;
+  whole->flow.force_evaluations += before.flow.force_evaluations;
+  whole->flow.starts += before.flow.starts;
+}
+
+/* The tangent vectors at the end of an interval: factorised, their growth added when it counts. */
+static void take_stock(course *c, double length, double *exponents) {
+  size_t n = c->n, count = c->count;
+  memcpy(c->vectors, ric_trajectory_dq(c->trajectory), n * count * sizeof *c->vectors);
+  if (c->size > n)
+    memcpy(c->vectors + n * count, ric_trajectory_du(c->trajectory), (c->size - n) * count * sizeof *c->vectors);
+  orthonormal_make(&c->work, c->vectors, c->growth);
+  if (time_now(c) <= c->begin)
+    return;
+  c->result->time += length;
+  for (size_t k = 0; k < count; k++) {
+    c->sum[k] += c->growth[k];
+    exponents[k] = c->sum[k] / c->result->time;
+  }
+}
+
+static double next_stop(const course *c, double end) {
+  double t = time_now(c), stop = fmin(t + c->options->interval, end);
+  return t < c->begin ? fmin(stop, c->begin) : stop;
+}
+
+/* One interval. @param over  whether it was the last */
+static ric_status advance(course *c, double end, double *exponents, bool *over, ric_error *error) {
+  const ric_lyapunov_options *o = c->options;
+  double start = time_now(c);
+  ric_run part;
+  RIC_TRY(ric_trajectory_carry(c->trajectory, c->count, c->vectors, c->vectors + c->n * c->count, error));
+  RIC_TRY(ric_trajectory_run(c->trajectory, next_stop(c, end), o->observer, &part, error));
+  join(&c->result->run, &part);
+  *over = part.outcome != RIC_RUN_COMPLETED || time_now(c) >= end;
+  if (ric_trajectory_columns(c->trajectory) != c->count || !(time_now(c) > start))
+    return RIC_OK;
+  take_stock(c, time_now(c) - start, exponents);
+  if (c->result->time > 0 && o->history && o->history(c->result->time, exponents, c->count, o->user) != 0) {
+    c->result->run.outcome = RIC_RUN_ENDED;
+    *over = true;
+  }
+  return RIC_OK;
+}
+
+ric_status ric_lyapunov_run(ric_trajectory *trajectory, double end, const ric_lyapunov_options *options,
+                            double *exponents, ric_lyapunov *lyapunov, ric_error *error) {
+  ric_lyapunov_options o = options ? *options : ric_lyapunov_options_default();
+  const ric_system *system = trajectory->system;
+  course c = {.trajectory = trajectory, .options = &o, .n = system->coordinates, .result = lyapunov};
+  c.size = c.n + system->speeds;
+  c.count = o.count ? o.count : c.size;
+  c.begin = time_now(&c) + o.transient;
+  *lyapunov = (ric_lyapunov){0};
+  RIC_TRY(check(&o, c.size, error));
+  for (size_t k = 0; k < c.count; k++)
+    exponents[k] = NAN;
+  ric_status status = set_up(&c, error);
+  ric_run none;
+  if (status == RIC_OK)
+    status = ric_trajectory_run(trajectory, time_now(&c), NULL, &none, error);
+  lyapunov->run = none;
+  for (bool over = false; status == RIC_OK && !over;)
+    status = advance(&c, end, exponents, &over, error);
+  tear_down(&c);
+  return status;
+}

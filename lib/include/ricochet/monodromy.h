@@ -1,0 +1,39 @@
+/* Monodromy matrices: the derivative of the state after a period by the state before it.
+ *
+ * From an event-driven run over one period with a tangent vector for every number of the state (trajectory.h), so for
+ * any system, any flow and any impacts through which there is a derivative. Its determinant is the product of e^2 over
+ * the impacts times the exponential of the integrated divergence; its eigenvalues are the multipliers
+ * (multipliers.h). */
+#ifndef RICOCHET_MONODROMY_H
+#define RICOCHET_MONODROMY_H
+
+#include "orbit.h"
+#include "trajectory.h"
+
+typedef struct ric_monodromy {
+  ric_run_outcome outcome; /* of the run: the matrix is set when it is `completed` */
+  char reason[256];        /* for people; "" when completed */
+  double closure_error;    /* largest difference of coordinates and speeds after the period, relative to the largest
+                              coordinate and speed; NaN when not completed */
+  size_t impacts;          /* events at which the speeds jump, and rests */
+} ric_monodromy;
+
+/** @param start  time of the state; must not be that of an impact
+ *  @param q, u  [n], [m] state there
+ *  @param period  > 0
+ *  @param options  of the run, NULL for the defaults
+ *  @param M  [n + m][n + m] row-major, state (q, u)
+ *  @returns RIC_EINVAL for a period that is not positive; as ric_trajectory_create and ric_trajectory_run. */
+RIC_API ric_status ric_monodromy_find(const ric_system *system, double start, const double *q, const double *u,
+                                      double period, const ric_trajectory_options *options, double *M,
+                                      ric_monodromy *monodromy, ric_error *error);
+
+/** That of an orbit of a chain, from t = T/4 on, halfway between its impacts.
+ *  @param solver  gives the state there
+ *  @param M  [2n][2n] row-major, state (q, v)
+ *  @returns RIC_EINVAL for an orbit without a state. */
+RIC_API ric_status ric_orbit_monodromy(ric_orbit_solver *solver, const ric_chain *chain, const ric_orbit *orbit,
+                                       const ric_trajectory_options *options, double *M, ric_monodromy *monodromy,
+                                       ric_error *error);
+
+#endif
