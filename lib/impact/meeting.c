@@ -39,8 +39,8 @@ static ric_status goes_in(ric_trajectory *tr, size_t obstacle, bool *in, bool *f
 static ric_status set_compliant(ric_trajectory *tr, size_t obstacle, ric_error *error) {
   bool in, fast;
   RIC_TRY(goes_in(tr, obstacle, &in, &fast, error));
-  flow_set_contact(tr->flow, obstacle, in ? CONTACT_PRESSED : CONTACT_OPEN);
-  return contact_departs(tr, obstacle, fast ? DEPARTS_FAST : DEPARTS_SLOWLY, error);
+  departure how = fast ? DEPARTS_FAST : DEPARTS_SLOWLY;
+  return in ? contact_presses(tr, obstacle, how, error) : contact_opens(tr, obstacle, how, error);
 }
 
 /* A compliant contact begins or ends to press. */
@@ -80,21 +80,12 @@ static ric_status sum_up(ric_trajectory *tr, size_t hits, ric_error *error) {
   return RIC_OK;
 }
 
-/* An impact's aftermath: leave or settle. */
+/* An impact's aftermath: leave, settle, or be taken for at rest. */
 static ric_status aftermath(ric_trajectory *tr, const impact *c, ric_error *error) {
   if (c->rate_end > tr->rate_noise)
-    return contact_departs(tr, c->obstacle, DEPARTS_FAST, error);
-  return index_list_add(&tr->settling, c->obstacle, error);
-}
-
-static ric_status will_rest(ric_trajectory *tr, size_t obstacle, double time, ric_error *error) {
-  coming_rest *coming = growing_room(tr->coming, tr->coming_count, &tr->coming_capacity, sizeof *coming);
-  if (!coming)
-    return ric_fail(error, RIC_ENOMEM, "no memory for more than %zu contacts that come to rest", tr->coming_count);
-  tr->coming = coming;
-  tr->coming[tr->coming_count++] = (coming_rest){.time = time, .obstacle = obstacle};
-  tr->resting[obstacle] = COMES_TO_REST;
-  return index_list_add(&tr->held, obstacle, error);
+    return contact_opens(tr, c->obstacle, DEPARTS_FAST, error);
+  RIC_TRY(index_list_add(&tr->settling, c->obstacle, error));
+  return isnan(c->accumulation) ? RIC_OK : contact_will_rest(tr, c->obstacle, tr->flow->time + c->accumulation, error);
 }
 
 static ric_event_kind kind_of(const ric_trajectory *tr, const impact *c, size_t hits, double depth) {
@@ -120,19 +111,13 @@ static void show_impact(ric_trajectory *tr, const impact *c, size_t hits, double
 
 /* A contact of the list: an impact, or a persistent contact that shares in the impulses. */
 static ric_status conclude_impact(ric_trajectory *tr, impact *c, size_t hits, double depth, ric_error *error) {
-  bool rested = tr->resting[c->obstacle] != RESTS_NOT;
   if (c->rate < -tr->rate_noise && fabs(gap_now(tr, c->obstacle)) > tr->noise / 100) /* more than rounding */
     RIC_TRY(contact_put_on(tr, c->obstacle, error));
-  RIC_TRY(aftermath(tr, c, error));
   if (c->rate < -tr->rate_noise || c->impulse > 0)
     show_impact(tr, c, hits, depth);
   if (!isnan(c->loss))
     tr->run->impact_loss += c->loss;
-  if (rested && c->rate_end > tr->rate_noise) {
-    flow_set_contact(tr->flow, c->obstacle, CONTACT_OPEN);
-    contact_release(tr, c->obstacle);
-  }
-  return isnan(c->accumulation) ? RIC_OK : will_rest(tr, c->obstacle, tr->flow->time + c->accumulation, error);
+  return aftermath(tr, c, error);
 }
 
 /* Applies the law to tr->impacts, the first `hits` of which are new. */
@@ -178,7 +163,7 @@ static ric_status sort_root(ric_trajectory *tr, size_t obstacle, ric_error *erro
   event.depth = gap_now(tr, obstacle);
   trajectory_show(tr, &event);
   /* leaving, it has a root again only below where it is now, so that time goes on */
-  return rate > tr->rate_noise ? contact_departs(tr, obstacle, DEPARTS_SLOWLY, error)
+  return rate > tr->rate_noise ? contact_opens(tr, obstacle, DEPARTS_SLOWLY, error)
                                : index_list_add(&tr->settling, obstacle, error);
 }
 
@@ -187,7 +172,7 @@ static ric_status add_held(ric_trajectory *tr, ric_error *error) {
   bool share = !tr->system->uncoupled && tr->system->model->direction;
   for (size_t i = 0; i < tr->held.count; i++) {
     size_t obstacle = tr->held.items[i];
-    if (tr->resting[obstacle] != RESTS_NOT)
+    if (contact_persists(tr, obstacle))
       RIC_TRY(share ? add_impact(tr, obstacle, error) : index_list_add(&tr->settling, obstacle, error));
   }
   return RIC_OK;
@@ -214,11 +199,9 @@ ric_status contacts_meet(ric_trajectory *tr, ric_error *error) {
     size_t obstacle = tr->locator.roots.hits[i].obstacle;
     if (is_compliant(tr, obstacle))
       RIC_TRY(switch_contact(tr, obstacle, error));
-    else if (flow_contact(tr->flow, obstacle) == CONTACT_HELD) {
-      flow_set_contact(tr->flow, obstacle, CONTACT_OPEN);
-      contact_release(tr, obstacle);
-      RIC_TRY(contact_departs(tr, obstacle, DEPARTS_SLOWLY, error));
-    } else
+    else if (flow_contact(tr->flow, obstacle) == CONTACT_HELD)
+      RIC_TRY(contact_opens(tr, obstacle, DEPARTS_SLOWLY, error));
+    else
       RIC_TRY(sort_root(tr, obstacle, error));
   }
   return resolve(tr, error);
@@ -228,14 +211,14 @@ static ric_status begin_one(ric_trajectory *tr, size_t obstacle, ric_error *erro
   double gap = gap_now(tr, obstacle), rate = rate_now(tr, obstacle), noise = tr->locator.noise;
   if (is_compliant(tr, obstacle)) {
     if (gap < -noise)
-      flow_set_contact(tr->flow, obstacle, CONTACT_PRESSED);
-    return fabs(gap) <= noise ? set_compliant(tr, obstacle, error) : RIC_OK;
+      return contact_presses(tr, obstacle, DEPARTED, error);
+    return gap <= noise ? set_compliant(tr, obstacle, error) : RIC_OK;
   }
   if (gap > noise)
     return RIC_OK;
   if (rate < -tr->rate_noise)
     return add_impact(tr, obstacle, error);
-  return rate > tr->rate_noise ? contact_departs(tr, obstacle, DEPARTS_FAST, error)
+  return rate > tr->rate_noise ? contact_opens(tr, obstacle, DEPARTS_FAST, error)
                                : index_list_add(&tr->settling, obstacle, error);
 }
 
@@ -251,24 +234,5 @@ ric_status contacts_begin(ric_trajectory *tr, ric_error *error) {
   for (size_t i = 0; i < tr->departing.count; i++)
     if (tr->locator.departure[tr->departing.items[i]] == DEPARTS_SLOWLY)
       carried_lose(tr, tr->departing.items[i], RIC_SALTATION_GRAZING);
-  return RIC_OK;
-}
-
-ric_status contacts_depart(ric_trajectory *tr, ric_error *error) {
-  size_t kept = 0;
-  for (size_t i = 0; i < tr->departing.count; i++) {
-    size_t obstacle = tr->departing.items[i];
-    double value = departure_value(tr, obstacle);
-    if (isnan(value))
-      return ric_fail(error, RIC_ECALLBACK, "at t = %g: the gap of obstacle %zu could not be evaluated", tr->flow->time,
-                      obstacle);
-    if (tr->locator.departure[obstacle] == DEPARTED)
-      continue;
-    if (value > tr->locator.noise)
-      tr->locator.departure[obstacle] = DEPARTED;
-    else
-      tr->departing.items[kept++] = obstacle;
-  }
-  tr->departing.count = kept;
   return RIC_OK;
 }

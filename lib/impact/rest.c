@@ -22,18 +22,6 @@ void contacts_measure(ric_trajectory *tr) {
   tr->rate_noise = tr->noise * (1 + (m ? largest(tr->flow->u, m) : place));
 }
 
-double departure_value(const ric_trajectory *tr, size_t obstacle) {
-  double gap = ric_system_gap(tr->system, obstacle, tr->flow->time, tr->flow->q);
-  return flow_contact(tr->flow, obstacle) == CONTACT_PRESSED ? -gap : gap;
-}
-
-ric_status contact_departs(ric_trajectory *tr, size_t obstacle, departure how, ric_error *error) {
-  bool listed = tr->locator.departure[obstacle] != DEPARTED;
-  tr->locator.departure[obstacle] = (unsigned char)how;
-  tr->locator.base[obstacle] = departure_value(tr, obstacle);
-  return listed ? RIC_OK : index_list_add(&tr->departing, obstacle, error);
-}
-
 /* Rates of the present state into tr->rates. */
 static ric_status find_rates(ric_trajectory *tr, double t, const double *q, const double *u, ric_error *error) {
   const ric_system *s = tr->system;
@@ -202,13 +190,6 @@ ric_status contact_put_on(ric_trajectory *tr, size_t obstacle, ric_error *error)
   return RIC_OK;
 }
 
-/* The gap of a held contact is zero; see halt for its rate. */
-static ric_status hold(ric_trajectory *tr, size_t obstacle, ric_error *error) {
-  flow_set_contact(tr->flow, obstacle, CONTACT_HELD);
-  tr->locator.departure[obstacle] = DEPARTED;
-  return contact_put_on(tr, obstacle, error);
-}
-
 /* Gap rates of all held contacts are zero: to rounding, and at coordinates exactly. */
 static ric_status halt(ric_trajectory *tr, ric_error *error) {
   const ric_system *s = tr->system;
@@ -228,42 +209,20 @@ ric_status contacts_keep_on(ric_trajectory *tr, bool *moved, ric_error *error) {
   for (size_t i = 0; i < tr->held.count && !tr->system->obstacles && tr->system->model->direction; i++) {
     size_t obstacle = tr->held.items[i];
     double gap = ric_system_gap(tr->system, obstacle, tr->flow->time, tr->flow->q);
-    if (fabs(gap) <= tr->locator.noise || tr->resting[obstacle] == RESTS_NOT)
+    if (fabs(gap) <= tr->locator.noise || !contact_persists(tr, obstacle))
       continue;
-    RIC_TRY(hold(tr, obstacle, error));
+    RIC_TRY(contact_put_on(tr, obstacle, error));
     *moved = true;
   }
   return *moved ? halt(tr, error) : RIC_OK;
 }
 
-static ric_status open_slowly(ric_trajectory *tr, size_t obstacle, ric_error *error) {
-  flow_set_contact(tr->flow, obstacle, CONTACT_OPEN);
-  return contact_departs(tr, obstacle, DEPARTS_SLOWLY, error);
-}
-
+/* The gap of a contact that rests is zero; see halt for its rate. */
 static ric_status conclude(ric_trajectory *tr, size_t obstacle, bool persists, ric_error *error) {
-  bool rested = tr->resting[obstacle] != RESTS_NOT;
-  RIC_TRY(persists ? hold(tr, obstacle, error) : open_slowly(tr, obstacle, error));
-  if (persists && !rested) {
-    tr->resting[obstacle] = RESTS;
-    RIC_TRY(index_list_add(&tr->held, obstacle, error));
-    trajectory_show_kind(tr, RIC_EVENT_REST, obstacle);
-  } else if (!persists && rested)
-    contact_release(tr, obstacle);
-  return RIC_OK;
-}
-
-void contact_release(ric_trajectory *tr, size_t obstacle) {
-  tr->resting[obstacle] = RESTS_NOT; /* leaves tr->held with the next look at that list */
-  trajectory_show_kind(tr, RIC_EVENT_RELEASE, obstacle);
-}
-
-void contacts_forget_released(ric_trajectory *tr) {
-  size_t kept = 0;
-  for (size_t i = 0; i < tr->held.count; i++)
-    if (tr->resting[tr->held.items[i]] != RESTS_NOT)
-      tr->held.items[kept++] = tr->held.items[i];
-  tr->held.count = kept;
+  if (!persists)
+    return contact_opens(tr, obstacle, DEPARTS_SLOWLY, error);
+  RIC_TRY(contact_put_on(tr, obstacle, error));
+  return contact_rests(tr, obstacle, error);
 }
 
 ric_status contacts_settle(ric_trajectory *tr, ric_error *error) {

@@ -5,7 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "growing.h"
 #include "trajectory_state.h"
 
 const char *ric_run_outcome_name(ric_run_outcome outcome) {
@@ -39,15 +38,6 @@ static ric_status check_options(const ric_trajectory_options *o, ric_error *erro
   RIC_TRY(check_range("rest_tol", o->rest_tol, 1e-2, error));
   if (!(o->events_per_time > 0))
     return ric_fail(error, RIC_EINVAL, "events_per_time = %g, expected > 0", o->events_per_time);
-  return RIC_OK;
-}
-
-ric_status index_list_add(index_list *list, size_t item, ric_error *error) {
-  size_t *items = growing_room(list->items, list->count, &list->capacity, sizeof *items);
-  if (!items)
-    return ric_fail(error, RIC_ENOMEM, "no memory for a list of more than %zu contacts", list->count);
-  list->items = items;
-  list->items[list->count++] = item;
   return RIC_OK;
 }
 
@@ -120,12 +110,8 @@ static ric_status check_start(const ric_trajectory *tr, double t, const double *
 }
 
 ric_status ric_trajectory_start(ric_trajectory *tr, double t, const double *q, const double *u, ric_error *error) {
-  size_t count = tr->system->obstacle_count;
   tr->started = false;
-  memset(tr->flow->contact, CONTACT_OPEN, count);
-  memset(tr->resting, RESTS_NOT, count);
-  memset(tr->locator.departure, DEPARTED, count);
-  tr->held.count = tr->departing.count = tr->coming_count = 0;
+  contacts_reset(tr);
   tr->carried.kind = RIC_SALTATION_DIFFERENTIABLE;
   RIC_TRY(ric_flow_start(tr->flow, t, q, u, error));
   RIC_TRY(check_start(tr, t, q, error));
@@ -177,30 +163,6 @@ static void show_grazes(ric_trajectory *tr, double start, double length) {
   }
 }
 
-/* Contacts whose summed-up impacts have accumulated by now rest. */
-static void show_coming(ric_trajectory *tr) {
-  size_t kept = 0;
-  for (size_t i = 0; i < tr->coming_count; i++) {
-    coming_rest c = tr->coming[i];
-    if (tr->resting[c.obstacle] != COMES_TO_REST)
-      continue; /* released before */
-    if (c.time > tr->flow->time) {
-      tr->coming[kept++] = c;
-      continue;
-    }
-    tr->resting[c.obstacle] = RESTS;
-    trajectory_show_kind(tr, RIC_EVENT_REST, c.obstacle);
-  }
-  tr->coming_count = kept;
-}
-
-static double next_stop(const ric_trajectory *tr, double end) {
-  for (size_t i = 0; i < tr->coming_count; i++)
-    if (tr->coming[i].time < end && tr->coming[i].time > tr->flow->time)
-      end = tr->coming[i].time;
-  return end;
-}
-
 /* Events of one time count once. */
 static void count_event_time(ric_trajectory *tr) {
   if (tr->flow->time - tr->window_start > 1) {
@@ -213,7 +175,7 @@ static void count_event_time(ric_trajectory *tr) {
 /* One step of the flow, up to its first event. */
 static ric_status advance(ric_trajectory *tr, double end, ric_error *error) {
   ric_flow *f = tr->flow;
-  RIC_TRY(ric_flow_step(f, next_stop(tr, end), error));
+  RIC_TRY(ric_flow_step(f, contacts_next_rest(tr, end), error));
   RIC_TRY(locator_scan(&tr->locator, f, tr->options.event_time_tol, error));
   bool meets = tr->locator.roots.count > 0, moved;
   double x = meets ? tr->locator.first : tr->locator.horizon, start = f->time, length = f->length;
@@ -227,7 +189,7 @@ static ric_status advance(ric_trajectory *tr, double end, ric_error *error) {
     count_event_time(tr);
   } else if (moved)
     RIC_TRY(flow_restart(f, error));
-  show_coming(tr);
+  contacts_come_to_rest(tr);
   return RIC_OK;
 }
 

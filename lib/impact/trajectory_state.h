@@ -80,15 +80,8 @@ ric_status contacts_begin(ric_trajectory *tr, ric_error *error);
 /** The flow stands at the first roots of a step: applies what happens there and restarts the flow. */
 ric_status contacts_meet(ric_trajectory *tr, ric_error *error);
 
-/** A step, or the part of it up to its first event, is over: contacts that are clear of zero have departed. */
-ric_status contacts_depart(ric_trajectory *tr, ric_error *error);
-
 /** Decides which of tr->settling persist and which open, and empties it. */
 ric_status contacts_settle(ric_trajectory *tr, ric_error *error);
-
-/** A held contact opens: shows it; contacts_forget_released then takes such out of the list of held ones. */
-void contact_release(ric_trajectory *tr, size_t obstacle);
-void contacts_forget_released(ric_trajectory *tr);
 
 /** Puts a contact onto its obstacle: takes away what errors of the flow have left of its gap, along the direction in
  *  which an impulse moves it. First-order systems have none and stay. */
@@ -123,11 +116,39 @@ ric_status chatter_ahead(ric_trajectory *tr, size_t hits, ric_error *error);
 /** Measures the present state: sets rate_noise and locator.noise. */
 void contacts_measure(ric_trajectory *tr);
 
+/* The life of a contact (contact.c). */
+
+/** All contacts open and clear of zero, nothing on any list. */
+void contacts_reset(ric_trajectory *tr);
+
+/** It rests or comes to rest. */
+bool contact_persists(const ric_trajectory *tr, size_t obstacle);
+
+/** It opens, or stays open, and departs from its present gap; one that has persisted is released, which is shown. Those
+ *  stay on the list of held ones until contacts_forget_released. */
+ric_status contact_opens(ric_trajectory *tr, size_t obstacle, departure how, ric_error *error);
+void contacts_forget_released(ric_trajectory *tr);
+
+/** It presses from now on; DEPARTED: it is clear of zero. */
+ric_status contact_presses(ric_trajectory *tr, size_t obstacle, departure how, ric_error *error);
+
+/** It is held from now on; one that has not persisted comes to rest, which is shown. */
+ric_status contact_rests(ric_trajectory *tr, size_t obstacle, ric_error *error);
+
+/** It persists, and counts as at rest from a later time on. */
+ric_status contact_will_rest(ric_trajectory *tr, size_t obstacle, double time, ric_error *error);
+
+/** Shows those whose time of rest has come. */
+void contacts_come_to_rest(ric_trajectory *tr);
+
+/** The first time of rest to come, `end` when it is later. */
+double contacts_next_rest(const ric_trajectory *tr, double end);
+
+/** A step, or the part of it up to its first event, is over: contacts that are clear of zero have departed. */
+ric_status contacts_depart(ric_trajectory *tr, ric_error *error);
+
 /** Present value of the function whose root is a contact's next event: its gap, or minus its gap while it is pressed.
  */
 double departure_value(const ric_trajectory *tr, size_t obstacle);
-
-/** A contact begins to depart from its present value. */
-ric_status contact_departs(ric_trajectory *tr, size_t obstacle, departure how, ric_error *error);
 
 #endif
