@@ -77,6 +77,40 @@ static void tangents_pass_impacts_of_lattices(void **state) {
   assert_true(c.impacts > 300);
 }
 
+/* Contacts that give way: nothing jumps, but the stiffness begins like a square root. */
+static void tangents_pass_hertz_contacts(void **state) {
+  (void)state;
+  static const double mass[] = {2, 0.5, 0.5, 1}, stiffness[] = {2, -1, -1, 2.5}, force[] = {0.4, 0};
+  const ric_mck model = {
+      .coordinates = 2, .mass.values = mass, .stiffness.values = stiffness, .frequency = 1.3, .force_cos = force};
+  comparison taylor = {0}, cvodes = {0};
+  ric_trajectory_options options = ric_trajectory_options_default();
+  options.flow.method = RIC_FLOW_CVODES;
+  options.flow.tolerance = 1e-13;
+  for (uint64_t seed = 0; seed < 24; seed++) {
+    static random_lattice r;
+    random_source source = {.state = seed};
+    double x[4];
+    ric_obstacle obstacles[4];
+    ric_system *system = NULL;
+    size_t count = random_obstacles(&source, 2, 1, obstacles);
+    for (size_t i = 0; i < count; i++)
+      obstacles[i].stiffness = random_uniform(&source, 10, 500);
+    for (int i = 0; i < 4; i++)
+      x[i] = random_uniform(&source, -0.4, 1);
+    random_lattice_set(&r, &source, 2, RIC_ENDS_FIXED, seed % 3 ? WITH_ALL : 0);
+    if (seed % 2)
+      assert_int_equal(ric_system_create_mck(&model, obstacles, count, &system, NULL), RIC_OK);
+    else
+      system = lattice_system(&r.lattice, obstacles, count);
+    compare(&taylor, system, NULL, x, 5, 1e-6, 1e-7);
+    if (seed < 8)
+      compare(&cvodes, system, &options, x, 5, 1e-5, 1e-6);
+    ric_system_destroy(&system);
+  }
+  print_message("[ worst %g with taylor, %g with cvodes ]\n", taylor.worst, cvodes.worst);
+}
+
 /* Masses that share inertia: one impulse moves all. */
 static void tangents_pass_impacts_of_coupled_masses(void **state) {
   (void)state;
@@ -200,6 +234,7 @@ static void tangents_pass_impacts_in_generalised_coordinates(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(tangents_pass_impacts_of_lattices),
+      cmocka_unit_test(tangents_pass_hertz_contacts),
       cmocka_unit_test(tangents_pass_impacts_of_coupled_masses),
       cmocka_unit_test(tangents_pass_impacts_in_generalised_coordinates),
   };
