@@ -80,9 +80,34 @@ static ric_status sum_up(ric_trajectory *tr, size_t hits, ric_error *error) {
   return RIC_OK;
 }
 
+/* Whether a contact comes in no faster than it would fall through the noise of its gap: it has been pressed on already,
+ * and an impact would only hand the noise from contact to contact. */
+static ric_status is_pressed_on(ric_trajectory *tr, size_t obstacle, double rate, bool *pressed, ric_error *error) {
+  double acceleration, noise = tr->locator.noise;
+  *pressed = false;
+  if (rate * rate > 1e4 * noise) /* for every acceleration below 5e3 */
+    return RIC_OK;
+  RIC_TRY(gap_acceleration(tr, obstacle, &acceleration, error));
+  *pressed = rate * rate <= -2 * acceleration * noise;
+  return RIC_OK;
+}
+
+/* Whether an impact leaves the obstacle. A bounce that stays within the noise of the gap does not: followed, the noise
+ * would keep it up. */
+static ric_status leaves(ric_trajectory *tr, const impact *c, bool *so, ric_error *error) {
+  bool low = false;
+  *so = c->rate_end > tr->rate_noise;
+  if (*so && c->rate < -tr->rate_noise && tr->system->model->restitution(tr->system, c->obstacle) < 1)
+    RIC_TRY(is_pressed_on(tr, c->obstacle, c->rate_end, &low, error));
+  *so &= !low;
+  return RIC_OK;
+}
+
 /* An impact's aftermath: leave, settle, or be taken for at rest. */
 static ric_status aftermath(ric_trajectory *tr, const impact *c, ric_error *error) {
-  if (c->rate_end > tr->rate_noise)
+  bool away;
+  RIC_TRY(leaves(tr, c, &away, error));
+  if (away)
     return contact_opens(tr, c->obstacle, DEPARTS_FAST, error);
   RIC_TRY(index_list_add(&tr->settling, c->obstacle, error));
   return isnan(c->accumulation) ? RIC_OK : contact_will_rest(tr, c->obstacle, tr->flow->time + c->accumulation, error);
@@ -134,18 +159,6 @@ static ric_status collide(ric_trajectory *tr, size_t hits, ric_error *error) {
   return RIC_OK;
 }
 
-/* Whether a contact comes in no faster than it would fall through the noise of its gap: it has been pressed on already,
- * and an impact would only hand the noise from contact to contact. */
-static ric_status is_pressed_on(ric_trajectory *tr, size_t obstacle, double rate, bool *pressed, ric_error *error) {
-  double acceleration, noise = tr->locator.noise;
-  *pressed = false;
-  if (rate * rate > 1e4 * noise) /* for every acceleration below 5e3 */
-    return RIC_OK;
-  RIC_TRY(gap_acceleration(tr, obstacle, &acceleration, error));
-  *pressed = rate * rate <= -2 * acceleration * noise;
-  return RIC_OK;
-}
-
 /* A root of an open rigid contact: an impact, a touch with rate zero, or noise on its way out. */
 static ric_status sort_root(ric_trajectory *tr, size_t obstacle, ric_error *error) {
   double rate = rate_now(tr, obstacle);
@@ -167,9 +180,13 @@ static ric_status sort_root(ric_trajectory *tr, size_t obstacle, ric_error *erro
                                : index_list_add(&tr->settling, obstacle, error);
 }
 
-/* Contacts that persist have their part in what happens at an impact: impulses where they couple, forces anyway. */
+/* Contacts that persist, or are closed without a rate, have their part in what happens at an impact: impulses where
+ * they couple, forces anyway. */
 static ric_status add_held(ric_trajectory *tr, ric_error *error) {
   bool share = !tr->system->uncoupled && tr->system->model->direction;
+  for (size_t i = 0; share && i < tr->settling.count; i++)
+    RIC_TRY(add_impact(tr, tr->settling.items[i], error));
+  tr->settling.count = share ? 0 : tr->settling.count;
   for (size_t i = 0; i < tr->held.count; i++) {
     size_t obstacle = tr->held.items[i];
     if (contact_persists(tr, obstacle))

@@ -92,11 +92,20 @@ static double chatter_limit(const ric_trajectory *tr) {
   return fmax(tr->options.chatter_tol, pow(tr->flow->options.tolerance * size, 0.25));
 }
 
+/* Whether a bounce loses no more of its height than the flow's errors can give back: followed, they would keep the
+ * series up. */
+static bool is_kept_up(const ric_trajectory *tr, const impact *c, double acceleration) {
+  double e = tr->system->model->restitution(tr->system, c->obstacle), size = tr->locator.noise / tr->noise;
+  double error = 10 * tr->flow->options.tolerance * size;
+  return acceleration < 0 && (1 - e * e) * c->rate_end * c->rate_end <= -2 * acceleration * error;
+}
+
 /* Flights of a gap with acceleration -A + J t that begin at the rate w and shrink by e last, in all and to the order
  * after the first, 2 w / (A (1 - e)) (1 + (2/3) (J / A^2) w / (1 - e)). */
 static double judge_series(const ric_trajectory *tr, const impact *c, double acceleration, double jerk) {
   double e = tr->system->model->restitution(tr->system, c->obstacle), duration = first_duration(tr, c, acceleration);
-  if (!(duration * fmax(1, fabs(jerk / acceleration)) <= chatter_limit(tr)))
+  double limit = is_kept_up(tr, c, acceleration) ? 1 : chatter_limit(tr);
+  if (!(duration * fmax(1, fabs(jerk / acceleration)) <= limit))
     return NAN;
   return duration * (1 + 2 * jerk * c->rate_end / (3 * acceleration * acceleration * (1 - e)));
 }
@@ -116,7 +125,7 @@ static ric_status find_candidates(ric_trajectory *tr, size_t hits, bool *any, ri
       RIC_TRY(find_rates(tr, f->time, f->q, f->u, error));
     asked = true;
     RIC_TRY(read_acceleration(tr, f->time, f->q, f->u, c->obstacle, &acceleration, error));
-    if (first_duration(tr, c, acceleration) <= chatter_limit(tr))
+    if (first_duration(tr, c, acceleration) <= chatter_limit(tr) || is_kept_up(tr, c, acceleration))
       c->accumulation = 0;
     *any |= !isnan(c->accumulation);
   }
@@ -217,9 +226,21 @@ ric_status contacts_keep_on(ric_trajectory *tr, bool *moved, ric_error *error) {
   return *moved ? halt(tr, error) : RIC_OK;
 }
 
+/* Whether contacts that persist leave the motion a direction. A user's contact that comes when they do not is held by
+ * them already. */
+static bool is_free(const ric_trajectory *tr) {
+  const ric_system *s = tr->system;
+  size_t held = 0;
+  if (s->obstacles)
+    return true;
+  for (size_t i = 0; i < tr->held.count; i++)
+    held += contact_persists(tr, tr->held.items[i]);
+  return held < (s->speeds ? s->speeds : s->coordinates);
+}
+
 /* The gap of a contact that rests is zero; see halt for its rate. */
 static ric_status conclude(ric_trajectory *tr, size_t obstacle, bool persists, ric_error *error) {
-  if (!persists)
+  if (!persists || !(contact_persists(tr, obstacle) || is_free(tr)))
     return contact_opens(tr, obstacle, DEPARTS_SLOWLY, error);
   RIC_TRY(contact_put_on(tr, obstacle, error));
   return contact_rests(tr, obstacle, error);

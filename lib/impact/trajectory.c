@@ -176,12 +176,14 @@ static void count_event_time(ric_trajectory *tr) {
 static ric_status advance(ric_trajectory *tr, double end, ric_error *error) {
   ric_flow *f = tr->flow;
   RIC_TRY(ric_flow_step(f, contacts_next_rest(tr, end), error));
-  RIC_TRY(locator_scan(&tr->locator, f, tr->options.event_time_tol, error));
+  RIC_TRY(locator_scan(&tr->locator, f, tr->options.event_time_tol * (1 + fabs(f->time)), error));
   bool meets = tr->locator.roots.count > 0, moved;
   double x = meets ? tr->locator.first : tr->locator.horizon, start = f->time, length = f->length;
   show_pieces(tr, x);
   ric_flow_accept(f, x);
   show_grazes(tr, start, length);
+  if (tr->held.count + tr->departing.count > 0)
+    contacts_measure(tr); /* the state may have grown since the last event */
   RIC_TRY(contacts_depart(tr, error));
   RIC_TRY(contacts_keep_on(tr, &moved, error));
   if (meets) {
