@@ -102,7 +102,8 @@ static ric_status gather_group(ric_trajectory *tr, size_t which, size_t hits, ju
   }
   if (!c->restitution)
     return ric_fail(error, RIC_ENOMEM, "no memory for %zu contacts", tr->impact_count);
-  bool sticks = !isnan(tr->impacts[which].accumulation);
+  const impact *first = &tr->impacts[which];
+  bool sticks = !isnan(first->accumulation) || flow_contact(tr->flow, first->obstacle) == CONTACT_HELD;
   for (size_t i = 0; i < tr->impact_count; i++) {
     const impact *contact = &tr->impacts[i];
     bool pushes = i == which || (hits == 1 && contact->impulse > 0);
