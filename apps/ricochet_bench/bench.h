@@ -23,8 +23,8 @@ typedef struct benchmark {
   work_done (*run)(size_t argument, int variant);
 } benchmark;
 
-/** Lists that end with a NULL name: orbits, and trajectories. */
-extern const benchmark benchmarks[], trajectory_benchmarks[];
+/** Lists that end with a NULL name: orbits, trajectories, and multipliers. */
+extern const benchmark benchmarks[], trajectory_benchmarks[], multiplier_benchmarks[];
 
 /** Seconds on the monotonic clock. */
 double bench_seconds(void);

@@ -45,6 +45,9 @@ void ric_orbit_solver_destroy(ric_orbit_solver **solver) {
   unit_cell_clear(&(*solver)->cell);
   impulse_clear(&(*solver)->impulse);
   motion_clear(&(*solver)->motion);
+  kicks_clear(&(*solver)->kicks);
+  reduced_clear(&(*solver)->reduced);
+  secular_clear(&(*solver)->secular);
   free((*solver)->store);
   free(*solver);
   *solver = NULL;

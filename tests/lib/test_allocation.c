@@ -142,6 +142,39 @@ static void solving_again_on_a_unit_cell_allocates_nothing(void **state) {
   assert_int_equal(allocations_of_repeats(scenario_word(".s.", 10, RIC_ENDS_FREE, 0.1, 5)), 0);
 }
 
+/* Allocations of multipliers once their workspaces are there, over a range of couplings. */
+static size_t allocations_of_multipliers(scenario s, ric_multiplier_method method) {
+  solved x = solved_by(RIC_METHOD_IMPULSE, s);
+  ric_orbit_multiplier_options options = ric_orbit_multiplier_options_default();
+  ric_multipliers m;
+  size_t before = 0;
+  options.method = method;
+  assert_int_equal(ric_multipliers_init(&m, 2 * s.chain.particles, NULL), RIC_OK);
+  watching = true;
+  for (int i = 0; i < 4; i++) {
+    if (i == 1)
+      before = allocations;
+    x.scenario.chain.gamma = 0.1 + 0.01 * i;
+    ric_orbit_solve(x.solver, &x.scenario.chain, s.pattern, s.period, &x.orbit, NULL);
+    ric_orbit_multipliers(x.solver, &x.scenario.chain, s.pattern, &x.orbit, &options, &m, NULL);
+    assert_true(m.stable != RIC_STABILITY_UNKNOWN);
+  }
+  size_t during = allocations - before;
+  watching = false;
+  ric_multipliers_clear(&m);
+  solved_clear(&x);
+  return during;
+}
+
+static void multipliers_again_allocate_nothing(void **state) {
+  (void)state;
+  for (int method = RIC_MULTIPLIERS_REDUCED; method <= RIC_MULTIPLIERS_DETERMINANT; method += 2) {
+    ric_multiplier_method by = (ric_multiplier_method)method;
+    assert_int_equal(allocations_of_multipliers(scenario_middle(30, RIC_ENDS_PERIODIC, 0.1, 4.7), by), 0);
+    assert_int_equal(allocations_of_multipliers(scenario_word("s..h...s.h.", 1, RIC_ENDS_FREE, 0.1, 4.7), by), 0);
+  }
+}
+
 static int pull(double t, const double *q, const double *u, double *f, void *user) {
   (void)t, (void)u, (void)user;
   f[0] = -q[0];
@@ -246,6 +279,7 @@ int main(void) {
       cmocka_unit_test(solving_again_on_a_free_chain_allocates_nothing),
       cmocka_unit_test(solving_again_with_an_awkward_number_of_particles_allocates_nothing),
       cmocka_unit_test(solving_again_on_a_unit_cell_allocates_nothing),
+      cmocka_unit_test(multipliers_again_allocate_nothing),
       cmocka_unit_test(moving_a_user_system_allocates_nothing),
       cmocka_unit_test(following_a_motion_again_allocates_nothing),
       cmocka_unit_test(memory_is_what_was_estimated),

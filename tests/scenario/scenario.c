@@ -72,6 +72,23 @@ scenario scenario_random(random_source *source, const scenario_ranges *ranges) {
   return s;
 }
 
+scenario scenario_few(random_source *source, const scenario_ranges *ranges, size_t most_impacts) {
+  static const ric_ends kinds[] = {RIC_ENDS_PERIODIC, RIC_ENDS_FIXED, RIC_ENDS_FREE};
+  size_t n = 2 + random_below(source, ranges->most_particles - 1);
+  ric_ends ends = kinds[random_below(source, 3)];
+  double gamma = random_uniform(source, 0, ranges->highest_gamma);
+  scenario s = on_chain(n, ends, gamma, random_uniform(source, ranges->shortest_period, ranges->longest_period));
+  char *letters = malloc(n);
+  if (!letters)
+    return s;
+  memset(letters, '.', n);
+  for (size_t impacts = 1 + random_below(source, most_impacts); impacts > 0; impacts--)
+    letters[random_below(source, n)] = "sh"[random_below(source, 2)];
+  s.pattern = pattern_of(letters, n);
+  free(letters);
+  return s;
+}
+
 ric_status scenario_solve(const scenario *s, ric_orbit_solver *solver, ric_orbit *orbit, ric_error *error) {
   RIC_TRY(ric_orbit_init(orbit, s->chain.particles, ric_pattern_impacts(s->pattern), error));
   return ric_orbit_solve(solver, &s->chain, s->pattern, s->period, orbit, error);

@@ -36,6 +36,9 @@ typedef struct scenario_ranges {
  *  others. */
 scenario scenario_random(random_source *source, const scenario_ranges *ranges);
 
+/** Random size >= 2, ends, coupling and period, with 1 ... most_impacts impacts of particles at random halves. */
+scenario scenario_few(random_source *source, const scenario_ranges *ranges, size_t most_impacts);
+
 /** Solves a scenario into a fresh orbit, which the caller clears whatever the status. */
 ric_status scenario_solve(const scenario *s, ric_orbit_solver *solver, ric_orbit *orbit, ric_error *error);
 

@@ -13,8 +13,13 @@
  *
  *     f(mu) = det(I - Y^T (mu - D)^-1 D X) = 0,
  *
- *   or an eigenvalue of D whose modes vanish at the impacts. The argument principle counts the zeros outside the
- *   circle; Newton's method finds them. */
+ *   or an eigenvalue of D whose modes vanish at the impacts. f is computed as a symmetric determinant of the jumps at
+ * the impacts, which is the same function. Signatures count the multipliers on the circle from below, the argument
+ *   principle counts those outside, and the secant method finds them.
+ *
+ * What `stable` means: of the reduced method that all eigenvalues lie on the circle; of the determinant method that the
+ * pairs counted on the circle and the one at 1 add up to n, so that none is left to be outside. Where they do not add
+ * up although nothing is outside of 1 + band, the verdict is `undecided`. */
 #ifndef RICOCHET_ORBIT_MULTIPLIERS_H
 #define RICOCHET_ORBIT_MULTIPLIERS_H
 
@@ -33,7 +38,8 @@ enum { RIC_REDUCED_PARTICLES = 400 };
 typedef struct ric_orbit_multiplier_options {
   ric_multiplier_method method;
   ric_multiplier_options judge;
-  bool on_circle; /* determinant: find all multipliers on the circle, too; off by default */
+  bool on_circle; /* determinant: find all multipliers on the circle, too, for up to some 500 particles; off by default.
+                     Two of opposite signature that nearly meet may escape: then count < dimension */
   ric_poll poll;
 } ric_orbit_multiplier_options;
 
@@ -43,8 +49,12 @@ RIC_API ric_orbit_multiplier_options ric_orbit_multiplier_options_default(void);
  *  @param solver  the one that solved it: gives the modes, and keeps the workspace
  *  @param multipliers  initialised for 2n
  *  @returns RIC_EINVAL for arguments that do not belong together; RIC_ELIMIT for the reduced and monodromy methods
- *           beyond RIC_REDUCED_PARTICLES; RIC_ENOMEM, RIC_ESTOPPED. Orbits without a state and orbits that graze are
- *           `unknown`. */
+ *           beyond RIC_REDUCED_PARTICLES; RIC_ENUMERIC when eigenvalues do not converge or a contour cannot be kept off
+ *           the multipliers; RIC_ENOMEM, RIC_ESTOPPED. Orbits without a state and orbits that graze (by outcome, or by
+ *           an impulse within the solver's grazing_tol) are `unknown`; orbits that are inadmissible or not unique are
+ *           judged like any other, but inadmissible ones are `unknown` to the monodromy method. The determinant method
+ *           counts all multipliers outside, and locates those outside of 1.001 and up to 64 closer ones; otherwise the
+ *           reason says how many are not located. */
 RIC_API ric_status ric_orbit_multipliers(ric_orbit_solver *solver, const ric_chain *chain, const ric_pattern *pattern,
                                          const ric_orbit *orbit, const ric_orbit_multiplier_options *options,
                                          ric_multipliers *multipliers, ric_error *error);
@@ -70,16 +80,18 @@ typedef struct ric_critical {
   double parameter;
   ric_complex mu;     /* where on the circle, with im >= 0 */
   bool outwards;      /* the number outside grows with the parameter */
-  double uncertainty; /* half the width of the last bracket */
+  double uncertainty; /* half the width of the last bracket, or the rounding of the zero in it */
 } ric_critical;
 
 /** Critical parameters of the orbits of a pattern in (low, high), by the reduced method; increasing.
  *
  *  Orbits are solved on a grid of `points` values; where the number of multipliers outside changes between neighbours,
- *  the place is bracketed by it, then refined to 1e-10 on a function that is smooth there: the distance of alpha from
- *  +1 (the trivial one taken out) or -1, or the discriminant (alpha_a - alpha_b)^2 of the two that meet. Two changes
- *  between neighbours of the grid that undo each other are not seen. Parameters at which there is no orbit end an
- *  interval.
+ *  by kind, the place is bracketed by it and bisected to 1e-11. alpha is computed with the trivial 1 taken out and
+ * passes through +-1 as a simple eigenvalue, so rounding is no larger; at a collision, where it is, the place is the
+ * zero of the discriminant (alpha_a - alpha_b)^2, extrapolated from beyond the bracket. Where rounding decides over a
+ * longer distance (impulses close to 0, weak coupling) the uncertainty says so. Two changes between neighbours of the
+ * grid that undo each other are not seen. Parameters at which there is no orbit end an interval; inadmissible orbits
+ * count.
  *  @param along  which parameter; gamma at the given period, or the period at the chain's gamma
  *  @param found  [capacity]; @param count  set to their number, also beyond the capacity
  *  @returns RIC_EINVAL for a range or points < 2; as ric_orbit_solve and ric_orbit_multipliers. */

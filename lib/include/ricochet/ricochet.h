@@ -14,7 +14,6 @@
 #include "mck.h"
 #include "monodromy.h"
 #include "multipliers.h"
-#include "multipliers.h"
 #include "obstacle.h"
 #include "orbit.h"
 #include "orbit_multipliers.h"
