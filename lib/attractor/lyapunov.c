@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <gsl/gsl_errno.h>
+
 #include "impact/trajectory_state.h"
 #include "model/system_model.h"
 #include "orthonormal.h"
@@ -109,6 +111,17 @@ static ric_status advance(course *c, double end, double *exponents, bool *over, 
   return RIC_OK;
 }
 
+static ric_status run(course *c, double end, double *exponents, ric_error *error) {
+  bool over = false;
+  ric_run *whole = &c->result->run;
+  RIC_TRY(set_up(c, error));
+  RIC_TRY(
+      ric_trajectory_run(c->trajectory, time_now(c), NULL, whole, error)); /* contacts that are closed at the start */
+  while (!over)
+    RIC_TRY(advance(c, end, exponents, &over, error));
+  return RIC_OK;
+}
+
 ric_status ric_lyapunov_run(ric_trajectory *trajectory, double end, const ric_lyapunov_options *options,
                             double *exponents, ric_lyapunov *lyapunov, ric_error *error) {
   ric_lyapunov_options o = options ? *options : ric_lyapunov_options_default();
@@ -121,13 +134,9 @@ ric_status ric_lyapunov_run(ric_trajectory *trajectory, double end, const ric_ly
   RIC_TRY(check(&o, c.size, error));
   for (size_t k = 0; k < c.count; k++)
     exponents[k] = NAN;
-  ric_status status = set_up(&c, error);
-  ric_run none;
-  if (status == RIC_OK)
-    status = ric_trajectory_run(trajectory, time_now(&c), NULL, &none, error);
-  lyapunov->run = none;
-  for (bool over = false; status == RIC_OK && !over;)
-    status = advance(&c, end, exponents, &over, error);
+  gsl_error_handler_t *handler = gsl_set_error_handler_off();
+  ric_status status = run(&c, end, exponents, error);
+  gsl_set_error_handler(handler);
   tear_down(&c);
   return status;
 }
