@@ -42,6 +42,21 @@ OUTCOME_LOOK = {
 }
 OTHER_LOOK = ("#c8c8c8", "||||", "^")
 
+STABILITY_LOOK = {
+    "stable": (BLUE, "", "o"),
+    "unstable": (ORANGE, "", "X"),
+    "undecided": (GREEN, "", "D"),
+    "unknown": ("#8a8a8a", "", "v"),
+}
+
+# Why a column is not there.
+ABSENT = {
+    "q": " (the study stored no states)",
+    "v": " (the study stored no states)",
+    "multipliers": " (the study did not ask for orbit.multipliers)",
+    "multiplier_max": " (the study did not ask for orbit.stable)",
+}
+
 PARAMETER_LABEL = {"model.gamma": r"coupling $\gamma$", "orbit.period": r"period $T$"}
 PARAMETER_SYMBOL = {"model.gamma": r"\gamma", "orbit.period": "T"}
 
@@ -96,7 +111,8 @@ class Study:
             "fixed": "{} particles, fixed ends",
             "free": "{} particles, free ends",
         }
-        return ends.get(self.word("ends"), "{} particles").format(particles)
+        words = ends.get(self.word("ends"), "{} particles").format(particles)
+        return words.replace("particles", "particle") if str(particles) == "1" else words
 
     def number(self, key):
         """A number, also as a multiple of pi, as mathematical text; None if the key holds anything else."""
@@ -106,11 +122,14 @@ class Study:
         return found[1] + (r"\,\pi" if found[2] else "")
 
 
-SPECIAL_LABELS = ("resonance", "idle resonance", "singular", "free impulses")
+CRITICAL_LABELS = {"plus_one": "pair at +1", "minus_one": "pair at \u22121", "collision": "collision"}
+SPECIAL_LABELS = ("resonance", "idle resonance", "singular", "free impulses", *CRITICAL_LABELS.values())
 
 
 def special_label(kind, outcome):
     """What a special point does to the orbit, one of SPECIAL_LABELS."""
+    if kind in CRITICAL_LABELS:
+        return CRITICAL_LABELS[kind]
     if kind == "resonance":
         return "resonance" if outcome in ("grazing", "resonant") else "idle resonance"
     return "free impulses" if outcome == "resonant" else "singular"
@@ -126,9 +145,10 @@ class Result:
         self.outcome = names_of(file["orbits/outcome"])
         self.columns = {
             name: file["orbits"][name][()]
-            for name in ("q", "v", "impulse", "energy", "clearance")
+            for name in ("q", "v", "impulse", "energy", "clearance", "multiplier_max", "multipliers")
             if name in file["orbits"]
         }
+        self.stable = names_of(file["orbits/stable"]) if "orbits/stable" in file else None
         self._read_sweep(file["sweep"])
         self.special = self._read_special(file)
         self.study = Study(text_of(file.attrs.get("study", "")))
@@ -162,9 +182,13 @@ class Result:
 
     def need(self, name):
         if name not in self.columns:
-            hint = " (the study stored no states)" if name in ("q", "v") else ""
-            raise FigureError(f"no /orbits/{name} in it{hint}")
+            raise FigureError(f"no /orbits/{name} in it{ABSENT.get(name, '')}")
         return self.columns[name]
+
+    def need_stable(self):
+        if self.stable is None:
+            raise FigureError(f"no /orbits/stable in it{ABSENT['multiplier_max']}")
+        return self.stable
 
     def need_sweep(self, count):
         if len(self.names) != count:
@@ -209,17 +233,23 @@ class Result:
 
     def subtitle(self):
         """The fixed parameters in one line, from the study."""
-        parts = [self.study.chain(self.study.word("particles") or "?")]
-        for name, symbol in PARAMETER_SYMBOL.items():
-            number = self.study.number(name.split(".")[1])
-            if number and name not in self.names:
-                parts.append(f"${symbol} = {number}$")
+        parts = fixed_parameters(self.study, self.study.word("particles") or "?", self.names)
         return ", ".join(parts + ["all quantities dimensionless"])
 
 
-def ordered_outcomes(names):
-    """The different names in the order of OUTCOME_LOOK, those of later versions behind."""
-    known = list(OUTCOME_LOOK)
+def fixed_parameters(study, particles, swept):
+    """The chain, and what of coupling and period the study holds fixed, in words."""
+    parts = [study.chain(particles)]
+    for name, symbol in PARAMETER_SYMBOL.items():
+        number = study.number(name.split(".")[1])
+        if number and name not in swept:
+            parts.append(f"${symbol} = {number}$")
+    return parts
+
+
+def ordered(names, looks=OUTCOME_LOOK):
+    """The different names in the order of their looks, those of later versions behind."""
+    known = list(looks)
     return sorted(set(names), key=lambda name: (known.index(name) if name in known else len(known), name))
 
 
@@ -363,11 +393,11 @@ def readable():
         raise FigureError(f"not a readable result: {first_line}") from trouble
 
 
-def open_result(path):
+def open_result(path, read=Result):
     if not os.path.isfile(path):
         raise FigureError("no such file")
     with readable(), h5py.File(path, "r") as file:
-        return Result(file)
+        return read(file)
 
 
 def make_parser(suffix, description, files="STEM.png and STEM.svg"):
@@ -401,11 +431,11 @@ def exit_code(options, action):
     return 0
 
 
-def run(draw, suffix, description, add_options=None):
-    """The main function of a script: options, result, `draw(result, options)`, both files."""
+def run(draw, suffix, description, add_options=None, read=Result):
+    """The main function of a script: options, `read(file)`, `draw(result, options)`, both files."""
     parser = make_parser(suffix, description)
     if add_options:
         add_options(parser)
     options = parser.parse_args()
     stem = stem_of(options, suffix)
-    return exit_code(options, lambda: save(draw(open_result(options.result), options), stem))
+    return exit_code(options, lambda: save(draw(open_result(options.result, read), options), stem))

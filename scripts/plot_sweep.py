@@ -20,6 +20,9 @@ SPECIAL_LOOK = {
     "idle resonance": ("resonance of a mode that the impacts hold", None, figures.FAINT),
     "singular": ("singular point: amplitudes blow up", (0, (5, 2)), figures.RED),
     "free impulses": ("singular but solvable: not unique", None, figures.PINK),
+    "pair at +1": ("multipliers leave or join the circle at +1", None, figures.BLUE),
+    "pair at \u22121": ("multipliers leave or join the circle at \u22121", None, figures.SKY),
+    "collision": ("pairs of multipliers collide on the circle", None, figures.ORANGE),
 }
 RARE = ("grazing", "resonant", "singular", "not_converged", "failed")
 
@@ -140,7 +143,7 @@ def is_thin(where, edges):
 def draw_strip(axes, at, outcome, edges):
     """The outcomes as a coloured strip; the rare ones also as markers, since one task is a hair wide."""
     entries = []
-    for name in figures.ordered_outcomes(outcome):
+    for name in figures.ordered(outcome):
         face, hatch, marker = figures.OUTCOME_LOOK.get(name, figures.OTHER_LOOK)
         where = outcome == name
         for first, last in runs(where):

@@ -209,11 +209,7 @@ class Motion:
 
     def subtitle(self):
         """What is drawn in one line: model, parameters, task, outcome."""
-        parts = [self.study.chain(self.particles)]
-        for name, symbol in figures.PARAMETER_SYMBOL.items():
-            number = self.study.number(name.split(".")[1])
-            if number and name not in self.swept:
-                parts.append(f"${symbol} = {number}$")
+        parts = figures.fixed_parameters(self.study, self.particles, self.swept)
         parts += [f"{figures.parameter_symbol(name)} = {value:.6g}" for name, value in self.swept.items()]
         if self.tasks > 1:
             parts.append(f"task {self.task}")

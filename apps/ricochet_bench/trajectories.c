@@ -134,6 +134,58 @@ static work_done driven(size_t n, int method) {
   return done;
 }
 
+enum { PERIODS = 51 /* timed in turn with and without tangent vectors, for their medians */ };
+
+/* One period from T / 4 on, with `columns` tangent vectors, those of the identity. */
+static double time_period(motion *m, const double *q, const double *u, const double *identity, size_t columns) {
+  const size_t n = m->orbit.particles;
+  double began = bench_seconds();
+  m->failed |= ric_trajectory_start(m->trajectory, source_period / 4, q, u, NULL) != RIC_OK ||
+               ric_trajectory_carry(m->trajectory, columns, identity, identity + n * columns, NULL) != RIC_OK ||
+               ric_trajectory_run(m->trajectory, 1.25 * source_period, NULL, &m->run, NULL) != RIC_OK ||
+               m->run.outcome != RIC_RUN_COMPLETED || ric_trajectory_columns(m->trajectory) != columns ||
+               m->run.events[RIC_EVENT_TRANSVERSAL] != 1;
+  return bench_seconds() - began;
+}
+
+static double median_of_periods(double *seconds) {
+  for (int i = 1; i < PERIODS; i++)
+    for (int j = i; j > 0 && seconds[j] < seconds[j - 1]; j--) {
+      const double swap = seconds[j];
+      seconds[j] = seconds[j - 1];
+      seconds[j - 1] = swap;
+    }
+  return seconds[PERIODS / 2];
+}
+
+/* What all tangent vectors cost over the motion alone. */
+static work_done variational(size_t n, int variant) {
+  (void)variant;
+  motion m = start(n, source_gamma, source_period);
+  const size_t size = 2 * n;
+  double plain[PERIODS], carried[PERIODS];
+  double *identity = calloc(size * size, sizeof *identity), *state = calloc(size, sizeof *state);
+  go(&m, source_period / 4);
+  m.failed |= !identity || !state;
+  for (size_t i = 0; !m.failed && i < size; i++) {
+    identity[i * size + i] = 1;
+    state[i] = i < n ? ric_trajectory_q(m.trajectory)[i] : ric_trajectory_u(m.trajectory)[i - n];
+  }
+  for (int i = 0; !m.failed && i < PERIODS; i++) {
+    plain[i] = time_period(&m, state, state + n, identity, 0);
+    carried[i] = time_period(&m, state, state + n, identity, size);
+  }
+  work_done done = {.tasks = 1, .n = n, .failed = m.failed, .measure = "ratio"};
+  if (!m.failed) {
+    done.seconds = median_of_periods(carried);
+    done.value = done.seconds / median_of_periods(plain);
+  }
+  free(identity);
+  free(state);
+  finish(&m);
+  return done;
+}
+
 const benchmark trajectory_benchmarks[] = {
     {"motion_30", "[0, 20 T] of the source's localised orbit, n = 30", 101, 30, 0, simulation},
     {"motion_3000", "the same with n = 3000", 21, 3000, 0, simulation},
@@ -143,4 +195,6 @@ const benchmark trajectory_benchmarks[] = {
     {"motion_long", "100 000 periods of a stable orbit, with the drift of its energy", 1, 100000, 0, long_run},
     {"driven_taylor", "600 time units of a driven chain of 8, Taylor flow", 5, 8, RIC_FLOW_TAYLOR, driven},
     {"driven_cvodes", "the same with CVODES, with its force evaluations per impact", 5, 8, RIC_FLOW_CVODES, driven},
+    {"variational_30", "a period of that orbit, n = 30, with 60 tangent vectors, and over that without", 11, 30, 0,
+     variational},
     {0}};

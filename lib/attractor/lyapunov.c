@@ -1,6 +1,7 @@
 #include "ricochet/lyapunov.h"
 
 #include <math.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -27,14 +28,24 @@ typedef struct course {
   ric_lyapunov *result;
 } course;
 
-static ric_status check(const ric_lyapunov_options *o, size_t size, ric_error *error) {
+static ric_status check(const ric_lyapunov_options *o, size_t size, double end, ric_error *error) {
   if (o->count > size)
     return ric_fail(error, RIC_EINVAL, "count = %zu, expected at most %zu exponents (or 0: all)", o->count, size);
-  if (!(o->interval > 0))
-    return ric_fail(error, RIC_EINVAL, "interval = %g, expected > 0", o->interval);
+  if (!(o->interval > 1e-12 * (1 + fabs(end)))) /* shorter ones are lost in the rounding of time */
+    return ric_fail(error, RIC_EINVAL, "interval = %g, expected > %g", o->interval, 1e-12 * (1 + fabs(end)));
   if (!(o->transient >= 0 && o->transient < INFINITY))
     return ric_fail(error, RIC_EINVAL, "transient = %g, expected a finite number >= 0", o->transient);
   return RIC_OK;
+}
+
+/* Numbers with no pattern, always the same ones (a linear congruence): vectors that lie along the axes would miss for
+ * long what grows elsewhere. */
+static void scatter(double *x, size_t count) {
+  uint64_t state = 1;
+  for (size_t i = 0; i < count; i++) {
+    state = state * 6364136223846793005u + 1442695040888963407u;
+    x[i] = (double)(state >> 11) / 0x1p52 - 1;
+  }
 }
 
 static ric_status set_up(course *c, ric_error *error) {
@@ -43,9 +54,10 @@ static ric_status set_up(course *c, ric_error *error) {
   if (!c->vectors || !c->growth)
     return ric_fail(error, RIC_ENOMEM, "no memory for %zu tangent vectors of %zu numbers", c->count, c->size);
   c->sum = c->growth + c->count;
-  for (size_t k = 0; k < c->count; k++)
-    c->vectors[k * c->count + k] = 1;
-  return orthonormal_init(&c->work, c->size, c->count, error);
+  RIC_TRY(orthonormal_init(&c->work, c->size, c->count, error));
+  scatter(c->vectors, c->size * c->count);
+  orthonormal_make(&c->work, c->vectors, c->growth);
+  return RIC_OK;
 }
 
 static void tear_down(course *c) {
@@ -131,7 +143,7 @@ ric_status ric_lyapunov_run(ric_trajectory *trajectory, double end, const ric_ly
   c.count = o.count ? o.count : c.size;
   c.begin = time_now(&c) + o.transient;
   *lyapunov = (ric_lyapunov){0};
-  RIC_TRY(check(&o, c.size, error));
+  RIC_TRY(check(&o, c.size, end, error));
   for (size_t k = 0; k < c.count; k++)
     exponents[k] = NAN;
   gsl_error_handler_t *handler = gsl_set_error_handler_off();

@@ -169,6 +169,9 @@ ric_status carried_meet(ric_trajectory *tr, size_t hits, ric_error *error) {
   RIC_TRY(pass_all(tr, hits, false, d, error));
   if (hits > 1 && !tangent_jumps_agree(d->q, other.q, size))
     carried_lose(tr, tr->impacts[0].obstacle, RIC_SALTATION_NOT_DIFFERENTIABLE);
+  /* Contacts that the impacts have closed leave no more of their directions than rounding, which is not to be kept. */
+  for (size_t i = 0; tr->system->obstacles && i < tr->held.count; i++)
+    carried_hold(tr, tr->held.items[i]);
   return RIC_OK;
 }
 

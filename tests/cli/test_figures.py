@@ -25,6 +25,14 @@ orbit: {{period: 1.5 pi, at_start: [3]{orbit}}}
 sweep:
 {sweep}
 """
+DRIVEN = """kind: trajectory
+title: driven between floor and wall
+model: {{type: chain, particles: {n}, ends: free, gamma: 0.1, stiffness: 0, damping: 0.1, floor: -1, wall: 1,
+        restitution: 0.8, force: {force}, frequency: 2.6}}
+start: {{v: 0}}
+time: {{duration: 100, samples: 2, lyapunov: true}}
+sweep: {{parameter: "model.force[0]", {sweep}}}
+"""
 GAMMA = "  - {{parameter: model.gamma, {}}}"
 
 
@@ -49,6 +57,21 @@ STUDIES = {
         "  - {parameter: orbit.period, values: [6, 5.6, 5, 4.5, 4.2, 3.9, 3.4]}\n"
         + GAMMA.format("from: 0, to: 0.6, points: 9"),
     ),
+    "stable": ring(
+        "multipliers", GAMMA.format("from: 0, to: 0.25, points: 51"), ", multipliers: true, special_points: true"
+    ),
+    "spread": ring("far from the circle", "", ", multipliers: true, at_half: [2]").replace("sweep:", ""),
+    "stable_grid": ring(
+        "stability",
+        "  - {parameter: orbit.period, values: [6, 5.6, 5, 4.5, 4.2, 3.9, 3.4]}\n"
+        + GAMMA.format("from: 0, to: 0.6, points: 9"),
+        ", stable: true",
+    ),
+    "exponents": DRIVEN.format(n=1, force="[7]", sweep="from: 7, to: 12, points: 6"),
+    "many_exponents": DRIVEN.format(n=4, force="[7, 0, 0, 0]", sweep="from: 7, to: 8, points: 3"),
+    "resting": DRIVEN.format(n=1, force="[7]", sweep="values: [7, 5.5, 4.5]")
+    .replace("stiffness: 0", "stiffness: 1")
+    .replace("wall: 1", "wall: null"),
     "stateless": ring("no states", GAMMA.format("from: 0, to: 0.19, points: 3"), ", states: false"),
     "floors": """kind: orbits
 title: the floor of one particle
@@ -84,6 +107,18 @@ FIGURES = [
     ("plot_map.py", "grid", ["--quantity", "none"]),
     ("plot_map.py", "broken_grid", []),
     ("plot_approach.py", "exact", []),
+    ("plot_sweep.py", "stable", []),
+    ("plot_multipliers.py", "stable", []),
+    ("plot_multipliers.py", "stable", ["--task", "40"]),
+    ("plot_multipliers.py", "spread", []),
+    ("plot_multipliers.py", "broken_stable", []),
+    ("plot_stability.py", "stable_grid", []),
+    ("plot_stability.py", "stable_grid", ["--all", "--swap"]),
+    ("plot_lyapunov.py", "exponents", []),
+    ("plot_lyapunov.py", "exponents", ["--task", "5"]),
+    ("plot_lyapunov.py", "many_exponents", []),
+    ("plot_lyapunov.py", "many_exponents", ["--task", "1"]),
+    ("plot_lyapunov.py", "resting", []),
 ]
 
 # script, file, words of the message
@@ -96,6 +131,10 @@ REFUSALS = [
     ("plot_sweep.py", "grid.h5", "2 swept parameters (orbit.period, model.gamma), this figure needs 1"),
     ("plot_modes.py", "stateless.h5", "no /orbits/q"),
     ("plot_approach.py", "family.h5", "0 tasks with the outcome grazing"),
+    ("plot_multipliers.py", "family.h5", "no /orbits/multipliers in it (the study did not ask for orbit.multipliers)"),
+    ("plot_stability.py", "grid.h5", "no /orbits/stable in it (the study did not ask for orbit.stable)"),
+    ("plot_stability.py", "stable.h5", "1 swept parameters (model.gamma), this figure needs 2"),
+    ("plot_lyapunov.py", "family.h5", "not a result of kind trajectory"),
 ]
 
 
@@ -125,7 +164,7 @@ def break_rows(source, target, rows):
         for i, row in enumerate(rows):
             orbits["outcome"][row] = kinds[("failed", "singular", "not_converged", "resonant")[i % 4]]
             for column in orbits.values():
-                if column.dtype.kind == "f":
+                if column.dtype.kind in "fc":
                     column[row] = np.nan
 
 
@@ -133,6 +172,7 @@ def make_files(folder):
     at = lambda name: os.path.join(folder, name)  # noqa: E731
     break_rows(at("poles.h5"), at("broken.h5"), [0, 5, 6, 40, 41, 80, 120])
     break_rows(at("falling.h5"), at("nothing.h5"), range(4))
+    break_rows(at("stable.h5"), at("broken_stable.h5"), [0, 7, 20, 50])
     break_rows(at("grid.h5"), at("broken_grid.h5"), [3, 20, 21, 62])
     with open(at("text.h5"), "w", encoding="utf-8") as file:
         file.write("no HDF5\n")
@@ -197,8 +237,9 @@ def unwritable_output_is_one_line(scripts, folder):
 
 def help_names_the_datasets(scripts, folder, script):
     done = call(scripts, folder, script, "--help")
+    kind = "trajectory" if script == "plot_lyapunov.py" else "orbits"
     assert (
-        done.returncode == 0 and "/orbits/outcome" in done.stdout and "--output" in done.stdout
+        done.returncode == 0 and f"/{kind}/outcome" in done.stdout and "--output" in done.stdout
     ), done.stdout
 
 

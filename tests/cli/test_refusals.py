@@ -269,7 +269,6 @@ def what_later_versions_bring_is_refused_by_name(ricochet, folder):
         ("type: chain", "type: oscillator", 4, "model.type = oscillator", later, "chain"),
         ("method: impulse", "method: shooting", 14, "orbit.method = shooting", later, "impulse, dense"),
         ("method: impulse", "method: ritz", 14, "orbit.method = ritz", later, "impulse, dense"),
-        ("states: true", "multipliers: true", 15, "orbit.multipliers = true", later, "false"),
         ("sweep:", "iterate: {keep: 1}\nsweep:", 16, "'iterate'", later),
         ("restitution: 1", "restitution: 0.8", 9, "model.restitution = 0.8", later),
     ]
@@ -310,6 +309,17 @@ def sizes_beyond_the_memory_are_refused(ricochet, folder):
 def dense_orbits_of_long_chains_are_refused(ricochet, folder):
     refused_by_both(ricochet, folder, BASE.replace("particles: 30", "particles: 100000").replace("impulse", "dense"),
                     "s.yaml:14: ", "orbit.method = dense", "method: impulse")
+
+
+@test
+def multipliers_of_long_chains_are_refused(ricochet, folder):
+    long = BASE.replace("particles: 30", "particles: 401")
+    refused_by_both(ricochet, folder, long.replace("states: true", "multipliers: true"), "s.yaml:15: ",
+                    "orbit.multipliers = true with 401 particles", "at most 400", "orbit.stable")
+    both = long.replace("states: true", "stable: true\n  special_points: true")
+    refused_by_both(ricochet, folder, both, "s.yaml:16: ", "orbit.special_points = true with orbit.stable", "400")
+    write(folder, "s.yaml", long.replace("states: true", "stable: true"))
+    ricochet("check", "s.yaml", cwd=folder).expect_done()
 
 
 @test

@@ -48,6 +48,20 @@ def a_grid_of_two_parameters_is_equal_for_all_ranks(ricochet, folder):
 
 
 @test
+def multipliers_and_critical_parameters_are_equal_for_all_ranks(ricochet, folder):
+    assert_equal_for_all_ranks(ricochet, folder, (ricochet.studies / "multipliers.yaml").read_text(), (1, 3))
+
+
+@test
+def verdicts_are_equal_for_all_ranks(ricochet, folder):
+    """By both methods: that of short chains, and that of long ones."""
+    for particles in (30, 402):
+        (folder / str(particles)).mkdir()
+        text = study(particles, at_start="[3, 15]", orbit="at_half: [9], stable: true", sweep=sweep(20))
+        assert_equal_for_all_ranks(ricochet, folder / str(particles), text, (1, 3))
+
+
+@test
 def more_ranks_than_tasks_stay_idle(ricochet, folder):
     text = study(at_start="[15]", sweep=sweep(2))
     assert_same(run_on(ricochet, folder, 1, text), run_on(ricochet, folder, 5, text))

@@ -61,6 +61,19 @@ def ragged_tables_of_many_chunks_are_equal_for_all_ranks(ricochet, folder):
     assert offsets[-1] > 3 * 65536, offsets[-1]
 
 
+EXPONENTS = trajectory(10, start=speeds(10), time="samples: 3, lyapunov: true", sweep=durations(TASKS, 20, 400))
+
+
+@test
+def exponents_are_equal_for_all_ranks_and_after_a_stop(ricochet, folder):
+    assert_equal_for_all_ranks(ricochet, folder, EXPONENTS, (1, 3))
+    own = folder / "stopped"
+    own.mkdir()
+    stopped(ricochet, own, EXPONENTS)
+    ricochet.run("s.yaml", "--resume", cwd=own, ranks=3).expect_done()
+    assert_same(folder / "0" / "s.h5", own / "s.h5", ANY_COMMAND)
+
+
 @test
 def tables_without_any_impact_are_equal_for_all_ranks(ricochet, folder):
     text = trajectory(2, start="v: 0.5", sweep=durations(30, 1, 30))

@@ -12,8 +12,8 @@ import xarray
 
 VARY = {"/": {"file_time", "command"}}
 DIMENSIONS = {
-    "/": {"task": 20, "particle": 6, "impact": 0, "sample": 5, "special_point": 50, "none": 0},
-    "orbits": {"task": 20, "particle": 6, "impact": 0, "sample": 5},
+    "/": {"task": 20, "particle": 6, "impact": 0, "sample": 5, "multiplier": 12, "special_point": 50, "none": 0},
+    "orbits": {"task": 20, "particle": 6, "impact": 0, "sample": 5, "multiplier": 12},
     "special": {"special_point": 50},
     "nothing": {"none": 0},
     "sweep": {"task": 20},
@@ -79,6 +79,12 @@ def check_values(file):
     path = numpy.sin(numpy.arange(20.0)[:, None] + 0.001 * numpy.arange(30)).reshape(20, 5, 6)
     path[3::7, 0, 0], path[4::7, 0, 0] = math.nan, -math.inf
     numpy.testing.assert_allclose(file["orbits/path"], path, rtol=1e-14)
+    parts = numpy.sin(numpy.arange(20.0)[:, None] + 0.001 * numpy.arange(24)).reshape(20, 12, 2)
+    parts[3::7, 0, 0], parts[4::7, 0, 0] = math.nan, -math.inf
+    assert file["orbits/multipliers"].dtype == numpy.complex128
+    numpy.testing.assert_allclose(file["orbits/multipliers"][()].view(float).reshape(20, 12, 2), parts, rtol=1e-14)
+    assert file["orbits/outcome"].attrs["tolerance"] == 1e-6 and file["orbits/outcome"].attrs["band"] == 0.25
+    assert "band" not in file["orbits/energy"].attrs and file["nothing/other"].dtype == numpy.complex128
     assert file["orbits/reason"][2].decode() == "café" and len(file["orbits/reason"][3]) == 32
     assert file["orbits/clearance_particle"][7] == 7 * 1000003 - 5
     assert file["orbits/impulse"].shape == (20, 0)
@@ -91,6 +97,7 @@ def check_xarray(path):
             opened.load()
     with xarray.open_dataset(path, engine="h5netcdf", group="orbits") as orbits:
         assert orbits.path.dims == ("task", "sample", "particle")
+        assert orbits.multipliers.dims == ("task", "multiplier") and orbits.multipliers.dtype == numpy.complex128
         assert orbits.q.dims == ("task", "particle") and orbits.energy.dims == ("task",)
         assert orbits.outcome.attrs["flag_meanings"].split()[1] == "inadmissible"
     with xarray.open_dataset(path, engine="h5netcdf", group="run") as run:

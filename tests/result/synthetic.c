@@ -3,38 +3,52 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "fake_study.h"
 
 static const char *const outcomes[] = {"admissible", "inadmissible", "grazing", "failed"};
 static const char *const kinds[] = {"resonance", "zero"};
 
-static column number(const char *name, const char *axis, size_t extent) {
-  return (column){name, COLUMN_F64, {axis}, {extent}, 0, NULL, 0, "length", "a made-up number", "synthetic.c", 0};
+static column made_up(const char *name, column_type type, const char *units, const char *what) {
+  return (column){.name = name, .type = type, .units = units, .long_name = what, .source = "synthetic.c"};
 }
 
-static column block(const char *name, const char *axis, size_t extent, const char *other, size_t other_extent) {
-  column c = number(name, axis, extent);
-  c.axes[1] = other;
-  c.extents[1] = other_extent;
+static column along(column c, const char *axis, size_t extent) {
+  const int k = column_axes(&c);
+  c.axes[k] = axis;
+  c.extents[k] = extent;
   return c;
 }
 
+static column number(const char *name) {
+  return made_up(name, COLUMN_F64, "length", "a made-up number");
+}
+
+static column complex_number(const char *name) {
+  return made_up(name, COLUMN_COMPLEX, "1", "a made-up complex number");
+}
+
 static column integer(const char *name) {
-  return (column){name, COLUMN_I64, {NULL}, {0}, 0, NULL, 0, "1", "a made-up integer", "synthetic.c", 0};
+  return made_up(name, COLUMN_I64, "1", "a made-up integer");
 }
 
 static column word(const char *name, const char *const *names, size_t count) {
-  return (column){name, COLUMN_ENUM, {NULL}, {0}, 0, names, count, "1", "a made-up verdict", "synthetic.c", 0};
+  column c = made_up(name, COLUMN_ENUM, "1", "a made-up verdict");
+  c.names = names;
+  c.name_count = count;
+  return c;
 }
 
 static column text(const char *name, size_t bytes) {
-  return (column){name, COLUMN_TEXT, {NULL}, {0}, bytes, NULL, 0, "", "a made-up remark", "synthetic.c", 0};
+  column c = made_up(name, COLUMN_TEXT, "", "a made-up remark");
+  c.text_bytes = bytes;
+  return c;
 }
 
 /* One value per value of the type's range that a reader could trip over: NaN, infinity, quotes, UTF-8, a full text. */
 static void fill_numbers(unsigned char *row, const column *c, uint64_t task) {
-  const size_t count = column_values(c);
+  const size_t count = column_bytes(c) / sizeof(double); /* two for each complex number */
   double *values = malloc((count + 1) * sizeof *values);
   for (size_t i = 0; values && i < count; i++)
     values[i] = sin((double)task + 0.001 * (double)i);
@@ -60,7 +74,7 @@ static int fill_rows(void *user, uint64_t first, uint64_t count, unsigned char *
       const column *c = &t->columns[k];
       unsigned char *row = rows + i * t->row_bytes;
       uint64_t task = first + i;
-      if (c->type == COLUMN_F64)
+      if (c->type == COLUMN_F64 || c->type == COLUMN_COMPLEX)
         fill_numbers(row, c, task);
       else if (c->type == COLUMN_I64)
         row_put_integer(row, c, (long)task * 1000003 - 5);
@@ -73,20 +87,29 @@ static int fill_rows(void *user, uint64_t first, uint64_t count, unsigned char *
 }
 
 static void lay_out(synthetic *s, const synthetic_size *size) {
-  s->layouts[0] =
-      (table){.group = "orbits",
-              .row_axis = "task",
-              .columns = {word("outcome", outcomes, 4), text("reason", 32), number("energy", NULL, 1),
-                          integer("clearance_particle"), number("q", "particle", size->particles),
-                          number("v", "particle", size->particles), number("impulse", "impact", size->impacts),
-                          block("path", "sample", 5, "particle", size->particles)},
-              .column_count = 8};
-  s->layouts[1] = (table){.group = "special",
-                          .row_axis = "special_point",
-                          .columns = {word("kind", kinds, 2), number("gamma", NULL, 1), text("remark", 32)},
-                          .column_count = 3};
-  s->layouts[2] =
-      (table){.group = "nothing", .row_axis = "none", .columns = {number("value", NULL, 1)}, .column_count = 1};
+  const size_t n = size->particles;
+  const column orbits[] = {word("outcome", outcomes, 4),
+                           text("reason", 32),
+                           number("energy"),
+                           integer("clearance_particle"),
+                           along(number("q"), "particle", n),
+                           along(number("v"), "particle", n),
+                           along(number("impulse"), "impact", size->impacts),
+                           along(along(number("path"), "sample", 5), "particle", n),
+                           along(complex_number("multipliers"), "multiplier", 2 * n)};
+  const column special[] = {word("kind", kinds, 2), number("gamma"), complex_number("multiplier"), text("remark", 32)};
+  const column nothing[] = {number("value"), complex_number("other")};
+  const column *const lists[SYNTHETIC_TABLES] = {orbits, special, nothing};
+  const size_t counts[SYNTHETIC_TABLES] = {sizeof orbits / sizeof *orbits, sizeof special / sizeof *special, 2};
+  s->layouts[0] = (table){.group = "orbits", .row_axis = "task"};
+  s->layouts[1] = (table){.group = "special", .row_axis = "special_point"};
+  s->layouts[2] = (table){.group = "nothing", .row_axis = "none"};
+  for (int i = 0; i < SYNTHETIC_TABLES; i++) {
+    memcpy(s->layouts[i].columns, lists[i], counts[i] * sizeof *lists[i]);
+    s->layouts[i].column_count = counts[i];
+  }
+  table_put_attribute(&s->layouts[0], "outcome", "tolerance", 1e-6);
+  table_put_attribute(&s->layouts[0], "outcome", "band", 0.25);
 }
 
 int synthetic_init(synthetic *s, const synthetic_size *size, int ranks) {

@@ -63,9 +63,10 @@ static void show_lists_columns_and_counts_words(void **state) {
   message why;
   PRINTED(result_show(RESULT_FILE, &why), 0);
   assert_line("/orbits");
-  assert_line("  q                   float64  [task 20, particle 6]            length  a made-up number");
-  assert_line("  path                float64  [task 20, sample 5, particle 6]  length  a made-up number");
-  assert_line("  reason              text 32  [task 20]                                a made-up remark");
+  assert_line("  q                   float64     [task 20, particle 6]            length  a made-up number");
+  assert_line("  path                float64     [task 20, sample 5, particle 6]  length  a made-up number");
+  assert_line("  multipliers         complex128  [task 20, multiplier 12]         1       a made-up complex number");
+  assert_line("  reason              text 32     [task 20]                                a made-up remark");
   assert_line("  outcome: admissible 10, inadmissible 10");
 }
 
@@ -73,8 +74,9 @@ static void show_prints_special_points_up_to_forty(void **state) {
   (void)state;
   message why;
   PRINTED(result_show(RESULT_FILE, &why), 0);
-  assert_line("  kind       gamma             remark");
-  assert_line("  zero       0.841470984808    particle 3, \"at once\"");
+  assert_line("  kind       gamma             multiplier                          remark");
+  assert_line("  zero       0.841470984808    0.841470984808+0.842010866288i      particle 3, \"at once\"");
+  assert_line("  zero       nan               nan+0.140129945168i                 0123456789abcdef0123456789abcdef");
   assert_line("  ... 10 more");
 }
 
@@ -92,8 +94,8 @@ static void csv_of_a_table_of_its_own_has_no_parameters(void **state) {
   (void)state;
   message why;
   PRINTED(result_show_csv(RESULT_FILE, "special", &why), 0);
-  assert_line("kind,gamma,remark");
-  assert_line("resonance,0.90929742682568171,caf\xc3\xa9");
+  assert_line("kind,gamma,multiplier.r,multiplier.i,remark");
+  assert_line("resonance,0.90929742682568171,0.90929742682568171,0.90888082540981685,caf\xc3\xa9");
 }
 
 static void csv_refuses_groups_without_columns(void **state) {

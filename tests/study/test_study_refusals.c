@@ -32,20 +32,13 @@ static void later_versions_are_refused_by_name(void **state) {
        "s.yaml:2: ", "kind = diagram is not in this version", NULL},
       {"method: impulse", "method: shooting",
        "s.yaml:14: ", "orbit.method = shooting is not in this version, expected one of impulse, dense", NULL},
-      {"states: true", "multipliers: true",
-       "s.yaml:15: ", "orbit.multipliers = true is not in this version, expected false", NULL},
+      {"method: impulse", "method: ritz",
+       "s.yaml:14: ", "orbit.method = ritz is not in this version, expected one of impulse, dense", NULL},
       {"sweep:", "iterate: {keep: 1}\nsweep:", "s.yaml:17: ", "'iterate' is not in this version", NULL},
       {"restitution: 1", "restitution: 0.8", "s.yaml:9: ",
        "model.restitution = 0.8 is not in this version: orbits of an undamped chain need restitution 1", NULL},
   };
   ASSERT_ALL_REFUSED(cases);
-}
-
-static void flags_of_a_later_version_may_be_false(void **state) {
-  (void)state;
-  study *s = parsed_variation("states: true", "multipliers: false");
-  study_destroy(&s);
-  assert_null(s);
 }
 
 static void wrong_numbers_are_refused_with_what_is_allowed(void **state) {
@@ -281,7 +274,6 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(unknown_keys_name_the_nearest),
       cmocka_unit_test(later_versions_are_refused_by_name),
-      cmocka_unit_test(flags_of_a_later_version_may_be_false),
       cmocka_unit_test(wrong_numbers_are_refused_with_what_is_allowed),
       cmocka_unit_test(wrong_words_flags_and_texts_are_refused),
       cmocka_unit_test(patterns_that_no_chain_has_are_refused),

@@ -86,7 +86,7 @@ static void allowed_values_are_said_in_words(void **state) {
   assert_allowed(KEY_ORBIT_PERIOD, "a number > 0");
   assert_allowed(KEY_ORBIT_AT_START, "a list of integers >= 0");
   assert_allowed(KEY_ORBIT_STATES, "true or false");
-  assert_allowed(KEY_ORBIT_MULTIPLIERS, "false");
+  assert_allowed(KEY_ORBIT_MULTIPLIERS, "true or false");
 }
 
 static void open_ranges_are_said_and_checked(void **state) {

@@ -6,6 +6,10 @@
 
 #include "hdf5_call.h"
 
+/** So many attributes of an object stay in its header, which has a checksum; HDF5's dense form keeps values over 4 kB
+ *  without one. */
+enum { ATTRIBUTE_MOST_COMPACT = 64 };
+
 /* Writing. @returns 0 or EXIT_FILES. */
 
 /** Text of fixed length, which readers cannot trip over; ASCII, or UTF-8 where a byte needs it. NULL counts as "". */

@@ -9,12 +9,14 @@
 
 enum {
   BLOCK = 4096,   /* rows read at a time */
+  MOST_PARTS = 2, /* of a value: complex numbers have two columns */
   ALL_DIGITS = 17 /* a double printed with so many reads back as itself */
 };
 
-/* A column of the output, with a block of its values. */
+/* A column of the output, with a block of the values that it is a part of. */
 typedef struct csv_column {
   const reader_set *set;
+  int part;
   unsigned char *values;
 } csv_column;
 
@@ -106,12 +108,16 @@ static int add_columns(csv *c, const reader_group *g, const char *axis) {
       return refuse(c->at->why, EXIT_FILES, "%s: %s has %llu rows, expected %llu", c->at->path, s->name,
                     (unsigned long long)s->shape[0], (unsigned long long)c->rows);
     c->rows = s->shape[0];
-    csv_column *added = &c->columns[c->count++];
-    *added = (csv_column){.set = s, .values = calloc(BLOCK, s->value_bytes)};
-    if (!added->values)
-      return refuse(c->at->why, EXIT_RUN, "%s: out of memory", c->at->path);
+    for (int part = 0; part < reader_parts(s); part++) {
+      csv_column *added = &c->columns[c->count++];
+      *added = (csv_column){.set = s, .part = part, .values = calloc(BLOCK, s->value_bytes)};
+      if (!added->values)
+        return refuse(c->at->why, EXIT_RUN, "%s: out of memory", c->at->path);
+    }
     if (c->text_size < s->value_bytes + 1)
       c->text_size = s->value_bytes + 1;
+    if (c->text_size < strlen(s->name) + sizeof ".r")
+      c->text_size = strlen(s->name) + sizeof ".r";
   }
   return 0;
 }
@@ -137,7 +143,7 @@ static int choose_columns(csv *c) {
     reader_row_axis(&c->group.sets[0], axis);
   find_owner(c, axis);
   c->text_size = 256; /* the longest word of an enum, and any number */
-  c->columns = calloc(c->sweep.count + c->group.count + 1, sizeof *c->columns);
+  c->columns = calloc(MOST_PARTS * (c->sweep.count + c->group.count) + 1, sizeof *c->columns);
   if (!c->columns)
     return refuse(c->at->why, EXIT_RUN, "%s: out of memory", c->at->path);
   if (!has_rows_of(&c->group, axis))
@@ -191,7 +197,7 @@ static int print_block(csv *c, hsize_t first) {
       code = print_owner(c, first + i);
     for (size_t k = 0; !code && k < c->count; k++) {
       const csv_column *from = &c->columns[k];
-      reader_value(from->set, from->values + i * from->set->value_bytes, ALL_DIGITS, c->text, c->text_size);
+      reader_part(from->set, from->values + i * from->set->value_bytes, from->part, ALL_DIGITS, c->text, c->text_size);
       put_field(c->text);
       putchar(k + 1 < c->count ? ',' : '\n');
     }
@@ -204,7 +210,8 @@ static int print_columns(csv *c) {
   if (c->owner.offset)
     fputs("task,", stdout);
   for (size_t k = 0; k < c->count; k++) {
-    put_field(c->columns[k].set->name);
+    reader_part_name(c->columns[k].set, c->columns[k].part, c->text, c->text_size);
+    put_field(c->text);
     putchar(k + 1 < c->count ? ',' : '\n');
   }
   for (hsize_t first = 0; !code && !ferror(stdout) && first < c->rows; first += BLOCK)

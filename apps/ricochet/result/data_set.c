@@ -11,7 +11,8 @@ static hid_t data_set_properties(int rank, const hsize_t *chunk) {
   if (list < 0)
     return list;
   if (H5Pset_chunk(list, rank, chunk) >= 0 && H5Pset_fletcher32(list) >= 0 &&
-      H5Pset_alloc_time(list, H5D_ALLOC_TIME_LATE) >= 0 && H5Pset_obj_track_times(list, false) >= 0)
+      H5Pset_alloc_time(list, H5D_ALLOC_TIME_LATE) >= 0 && H5Pset_obj_track_times(list, false) >= 0 &&
+      H5Pset_attr_phase_change(list, ATTRIBUTE_MOST_COMPACT, 0) >= 0)
     return list;
   (void)H5Pclose(list);
   return H5I_INVALID_HID;
@@ -30,12 +31,23 @@ static hid_t enum_type(const column *c) {
   return type;
 }
 
+/* As h5py writes and reads complex numbers. */
+static hid_t complex_type(void) {
+  hid_t type = H5Tcreate(H5T_COMPOUND, 16);
+  if (type < 0 || (H5Tinsert(type, "r", 0, H5T_IEEE_F64LE) >= 0 && H5Tinsert(type, "i", 8, H5T_IEEE_F64LE) >= 0))
+    return type;
+  (void)H5Tclose(type);
+  return H5I_INVALID_HID;
+}
+
 hid_t data_set_type(const column *c) {
   switch (c->type) {
   case COLUMN_F64:
     return H5Tcopy(H5T_IEEE_F64LE);
   case COLUMN_I64:
     return H5Tcopy(H5T_STD_I64LE);
+  case COLUMN_COMPLEX:
+    return complex_type();
   case COLUMN_ENUM:
     return enum_type(c);
   case COLUMN_TEXT:
@@ -132,6 +144,13 @@ static int put_flag_meanings(const place *at, hid_t set, const column *c) {
   return code ? code : attribute_put_text(at, set, "flag_meanings", words.text);
 }
 
+static int put_attributes(const place *at, hid_t set, const column *c) {
+  int code = 0;
+  for (int i = 0; !code && i < COLUMN_MOST_ATTRIBUTES && c->attributes[i].name; i++)
+    code = attribute_put_number(at, set, c->attributes[i].name, c->attributes[i].value);
+  return code;
+}
+
 static int describe_column(const place *at, hid_t file, hid_t set, const table *t, const column *c) {
   char axes[256];
   snprintf(axes, sizeof axes, "%s", t->row_axis);
@@ -140,6 +159,8 @@ static int describe_column(const place *at, hid_t file, hid_t set, const table *
   int code = put_description(at, set, c->units, c->long_name, c->source, axes);
   if (!code && c->type == COLUMN_ENUM)
     code = put_flag_meanings(at, set, c);
+  if (!code)
+    code = put_attributes(at, set, c);
   if (!code)
     code = attach_scale(at, file, set, t->row_axis, 0);
   for (int i = 0; !code && i < column_axes(c); i++)

@@ -125,18 +125,43 @@ static int read_words(const place *at, reader_set *s) {
   return 0;
 }
 
+/* Whether a compound is {r, i} of two doubles, side by side. */
+static bool is_complex(hid_t type) {
+  static const char *const names[] = {"r", "i"};
+  bool so = H5Tget_nmembers(type) == 2 && H5Tget_size(type) == 2 * sizeof(double);
+  for (unsigned k = 0; so && k < 2; k++) {
+    char *name = H5Tget_member_name(type, k);
+    hid_t member = H5Tget_member_type(type, k);
+    so = name && strcmp(name, names[k]) == 0 && member >= 0 && H5Tequal(member, H5T_NATIVE_DOUBLE) > 0 &&
+         H5Tget_member_offset(type, k) == k * sizeof(double);
+    (void)H5Tclose(member);
+    (void)H5free_memory(name);
+  }
+  return so;
+}
+
+static reader_type type_of(hid_t type) {
+  switch (H5Tget_class(type)) {
+  case H5T_FLOAT:
+    return READER_NUMBER;
+  case H5T_INTEGER:
+    return READER_INTEGER;
+  case H5T_ENUM:
+    return READER_WORD;
+  case H5T_STRING:
+    return H5Tis_variable_str(type) == 0 ? READER_TEXT : READER_OTHER;
+  case H5T_COMPOUND:
+    return is_complex(type) ? READER_COMPLEX : READER_OTHER;
+  default:
+    return READER_OTHER;
+  }
+}
+
 static int read_type(const place *at, reader_set *s) {
   int code = 0;
   hid_t type = H5I_INVALID_HID;
   HDF5_TRY(at, type = H5Dget_type(s->id), "read the type of %s", s->name);
-  H5T_class_t class = H5Tget_class(type);
-  s->type = class == H5T_FLOAT     ? READER_NUMBER
-            : class == H5T_INTEGER ? READER_INTEGER
-            : class == H5T_ENUM    ? READER_WORD
-            : class == H5T_STRING  ? READER_TEXT
-                                   : READER_OTHER;
-  if (s->type == READER_TEXT && H5Tis_variable_str(type) != 0)
-    s->type = READER_OTHER;
+  s->type = type_of(type);
   HDF5_TRY(at,
            s->memory = H5Tcopy(s->type == READER_NUMBER    ? H5T_NATIVE_DOUBLE
                                : s->type == READER_INTEGER ? H5T_NATIVE_INT64
@@ -240,17 +265,30 @@ out:
   return hdf5_close(at, in_file, code);
 }
 
-void reader_value(const reader_set *s, const unsigned char *value, int digits, char *text, size_t size) {
+static void show_number(const unsigned char *value, int digits, char *text, size_t size) {
   double number;
+  memcpy(&number, value, sizeof number);
+  if (isnan(number)) /* printf would show the sign of some NaNs */
+    snprintf(text, size, "nan");
+  else
+    snprintf(text, size, "%.*g", digits, number);
+}
+
+int reader_parts(const reader_set *s) {
+  return s->type == READER_COMPLEX ? 2 : 1;
+}
+
+void reader_part_name(const reader_set *s, int part, char *text, size_t size) {
+  snprintf(text, size, "%s%s", s->name, reader_parts(s) == 1 ? "" : part == 0 ? ".r" : ".i");
+}
+
+void reader_part(const reader_set *s, const unsigned char *value, int part, int digits, char *text, size_t size) {
   int64_t integer;
   signed char word = (signed char)value[0];
   switch (s->type) {
   case READER_NUMBER:
-    memcpy(&number, value, sizeof number);
-    if (isnan(number)) /* printf would show the sign of some NaNs */
-      snprintf(text, size, "nan");
-    else
-      snprintf(text, size, "%.*g", digits, number);
+  case READER_COMPLEX:
+    show_number(value + (size_t)part * sizeof(double), digits, text, size);
     break;
   case READER_INTEGER:
     memcpy(&integer, value, sizeof integer);
@@ -269,4 +307,16 @@ void reader_value(const reader_set *s, const unsigned char *value, int digits, c
     snprintf(text, size, "?");
     break;
   }
+}
+
+void reader_value(const reader_set *s, const unsigned char *value, int digits, char *text, size_t size) {
+  char imaginary[64];
+  reader_part(s, value, 0, digits, text, size);
+  if (s->type != READER_COMPLEX)
+    return;
+  reader_part(s, value, 1, digits, imaginary, sizeof imaginary);
+  if (strcmp(text, "nan") == 0 && strcmp(imaginary, "nan") == 0)
+    return; /* one is enough to say that there is no number */
+  size_t used = strlen(text);
+  snprintf(text + used, size - used, "%s%si", imaginary[0] == '-' ? "" : "+", imaginary);
 }

@@ -21,7 +21,14 @@ typedef struct reader_names {
 int reader_list(const place *at, hid_t group, H5I_type_t type, reader_names *names);
 void reader_names_clear(reader_names *names);
 
-typedef enum reader_type { READER_NUMBER, READER_INTEGER, READER_WORD, READER_TEXT, READER_OTHER } reader_type;
+typedef enum reader_type {
+  READER_NUMBER,
+  READER_INTEGER,
+  READER_COMPLEX,
+  READER_WORD,
+  READER_TEXT,
+  READER_OTHER
+} reader_type;
 
 enum { READER_MAX_WORDS = 128 };
 
@@ -56,8 +63,17 @@ void reader_row_axis(const reader_set *s, char *axis);
  *  @param values  [count][value_bytes] */
 int reader_rows(const place *at, const reader_set *s, hsize_t first, hsize_t count, unsigned char *values);
 
-/** A value as text: numbers with `digits` significant digits, enums by name.
+/** Numbers that a value of the set consists of: real and imaginary part of a complex one, else 1. */
+int reader_parts(const reader_set *s);
+
+/** Name of a part: that of the set, or "multiplier.r" and "multiplier.i". */
+void reader_part_name(const reader_set *s, int part, char *text, size_t size);
+
+/** A part of a value as text: numbers with `digits` significant digits, enums by name.
  *  @param text  [size], cut to fit */
+void reader_part(const reader_set *s, const unsigned char *value, int part, int digits, char *text, size_t size);
+
+/** A whole value as text, complex ones as "0.5-2i". */
 void reader_value(const reader_set *s, const unsigned char *value, int digits, char *text, size_t size);
 
 #endif

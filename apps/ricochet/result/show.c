@@ -133,7 +133,7 @@ static int show_sweeps(const place *at, hid_t file) {
 /* --- groups --- */
 
 static void type_text(const reader_set *s, char *text, size_t size) {
-  static const char *const names[] = {"float64", "int64", "enum", "text", "other"};
+  static const char *const names[] = {"float64", "int64", "complex128", "enum", "text", "other"};
   if (s->type == READER_TEXT)
     snprintf(text, size, "text %zu", s->value_bytes);
   else

@@ -11,16 +11,13 @@
 
 /* --- properties --- */
 
-/* Attributes stay in the object's header, which has a checksum; the dense form keeps values over 4 kB without one. */
-enum { COMPACT_ATTRIBUTES = 64 };
-
 /* A group or file whose links keep the order they were made in, as `show` lists them. */
 static hid_t group_properties(hid_t class) {
   hid_t list = H5Pcreate(class);
   if (list < 0)
     return list;
   if (H5Pset_link_creation_order(list, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED) >= 0 &&
-      H5Pset_attr_phase_change(list, COMPACT_ATTRIBUTES, 0) >= 0 && H5Pset_obj_track_times(list, false) >= 0)
+      H5Pset_attr_phase_change(list, ATTRIBUTE_MOST_COMPACT, 0) >= 0 && H5Pset_obj_track_times(list, false) >= 0)
     return list;
   (void)H5Pclose(list);
   return H5I_INVALID_HID;

@@ -37,6 +37,7 @@ typedef enum study_key {
   KEY_ORBIT_STATES,
   KEY_ORBIT_SPECIAL_POINTS,
   KEY_ORBIT_MULTIPLIERS,
+  KEY_ORBIT_STABLE,
   KEY_ORBIT_VERIFY,
   KEY_START_Q,
   KEY_START_V,
@@ -45,6 +46,8 @@ typedef enum study_key {
   KEY_TIME_FLOW,
   KEY_TIME_TOLERANCE,
   KEY_TIME_EVENTS_PER_TIME,
+  KEY_TIME_LYAPUNOV,
+  KEY_TIME_LYAPUNOV_INTERVAL,
   KEY_COUNT
 } study_key;
 
@@ -68,7 +71,6 @@ typedef struct schema_entry {
   bool low_open, high_open;
   const char *words;       /* allowed words, "impulse|dense" */
   const char *later_words; /* words of a later version: refused with "not in this version" */
-  bool later;              /* flag of a later version: `false` is accepted, `true` is refused as above */
   const char *kinds;       /* kinds of study that the key is for, "orbits|trajectory"; NULL: all */
   bool per_particle;       /* a list has one element per particle */
   bool orbits_default;     /* periodic orbits are computed for the default only */

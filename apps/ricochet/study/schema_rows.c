@@ -5,16 +5,16 @@
 
 #include "study.h"
 
-#define ANY .low = -INFINITY, .high = INFINITY
+#define ANY  .low = -INFINITY, .high = INFINITY
+#define FLAG .type = VALUE_FLAG, .scalar = true, .no_sweep = "it is a flag, not a number"
+#define WORD .type = VALUE_WORD, .scalar = true, .no_sweep = "it is a word, not a number"
 
 static const schema_entry rows[KEY_COUNT] = {
     [KEY_KIND] = {.path = "kind",
-                  .type = VALUE_WORD,
-                  .scalar = true,
+                  WORD,
                   .required = true,
                   .words = "orbits|trajectory",
                   .later_words = "branch|grazing|diagram|atlas|basin",
-                  .no_sweep = "it is a word, not a number",
                   .doc = "What to compute. `orbits`: the periodic orbit of one impact pattern at every grid point; "
                          "`trajectory`: the motion from a state, or from such an orbit, at every grid point."},
     [KEY_TITLE] = {.path = "title",
@@ -24,12 +24,10 @@ static const schema_entry rows[KEY_COUNT] = {
                    .no_sweep = "it is text, not a number",
                    .doc = "Free text, copied to the result."},
     [KEY_MODEL_TYPE] = {.path = "model.type",
-                        .type = VALUE_WORD,
-                        .scalar = true,
+                        WORD,
                         .required = true,
                         .words = "chain",
                         .later_words = "duffing_chain|oscillator|grazing_map",
-                        .no_sweep = "it is a word, not a number",
                         .doc = "`chain`: particles on springs of their own, of unit mass and stiffness by default, "
                                "coupled to their neighbours."},
     [KEY_MODEL_PARTICLES] = {.path = "model.particles",
@@ -41,11 +39,9 @@ static const schema_entry rows[KEY_COUNT] = {
                              .no_sweep = "it changes the shape of the result",
                              .doc = "Number of particles, counted from 0 in all that follows."},
     [KEY_MODEL_ENDS] = {.path = "model.ends",
-                        .type = VALUE_WORD,
-                        .scalar = true,
+                        WORD,
                         .fallback = "periodic",
                         .words = "periodic|fixed|free",
-                        .no_sweep = "it is a word, not a number",
                         .doc = "`periodic`: a ring; `fixed`: the end particles are coupled to walls; `free`: they are "
                                "not."},
     [KEY_MODEL_GAMMA] = {.path = "model.gamma",
@@ -232,45 +228,42 @@ static const schema_entry rows[KEY_COUNT] = {
                                "Particles that hit at t = T/2 modulo T. The two lists name at least one particle, and "
                                "each at most once."},
     [KEY_ORBIT_METHOD] = {.path = "orbit.method",
-                          .type = VALUE_WORD,
-                          .scalar = true,
+                          WORD,
                           .kinds = "orbits",
                           .fallback = "impulse",
                           .words = "impulse|dense",
                           .later_words = "shooting|ritz",
-                          .no_sweep = "it is a word, not a number",
                           .doc =
                               "`impulse`: the impulse response, fast for any size; `dense`: the boundary-value problem "
                               "with dense matrices, a reference for small chains."},
     [KEY_ORBIT_STATES] = {.path = "orbit.states",
-                          .type = VALUE_FLAG,
-                          .scalar = true,
+                          FLAG,
                           .kinds = "orbits",
                           .fallback = "true",
-                          .no_sweep = "it is a flag, not a number",
                           .doc = "Whether the result stores displacements and velocities just after t = 0."},
     [KEY_ORBIT_SPECIAL_POINTS] = {.path = "orbit.special_points",
-                                  .type = VALUE_FLAG,
-                                  .scalar = true,
+                                  FLAG,
                                   .kinds = "orbits",
                                   .fallback = "false",
-                                  .no_sweep = "it is a flag, not a number",
                                   .doc = "Resonances and singular points along the swept parameter are listed in the "
-                                         "result; needs one sweep, over model.gamma or orbit.period."},
+                                         "result, and with `orbit.stable` or `orbit.multipliers` the critical ones; "
+                                         "needs one sweep, over model.gamma or orbit.period."},
     [KEY_ORBIT_MULTIPLIERS] = {.path = "orbit.multipliers",
-                               .type = VALUE_FLAG,
-                               .scalar = true,
+                               FLAG,
                                .kinds = "orbits",
                                .fallback = "false",
-                               .later = true,
-                               .no_sweep = "it is a flag, not a number",
-                               .doc = "Floquet multipliers of every orbit; of a later version."},
-    [KEY_ORBIT_VERIFY] = {.path = "orbit.verify",
-                          .type = VALUE_FLAG,
-                          .scalar = true,
+                               .doc = "All Floquet multipliers of every orbit, and the verdict of `orbit.stable`; for "
+                                      "chains of up to 400 particles."},
+    [KEY_ORBIT_STABLE] = {.path = "orbit.stable",
+                          FLAG,
                           .kinds = "orbits",
                           .fallback = "false",
-                          .no_sweep = "it is a flag, not a number",
+                          .doc = "Whether every orbit is stable, and how many multipliers lie outside the unit circle; "
+                                 "for chains of any size."},
+    [KEY_ORBIT_VERIFY] = {.path = "orbit.verify",
+                          FLAG,
+                          .kinds = "orbits",
+                          .fallback = "false",
                           .doc =
                               "An event-driven run over one period checks every orbit that is admissible or grazing."},
     [KEY_START_Q] = {.path = "start.q",
@@ -314,12 +307,10 @@ static const schema_entry rows[KEY_COUNT] = {
                           .doc =
                               "Number of states in the result, at equal steps from 0 to the duration, both included."},
     [KEY_TIME_FLOW] = {.path = "time.flow",
-                       .type = VALUE_WORD,
-                       .scalar = true,
+                       WORD,
                        .fallback = "auto",
                        .words = "auto|taylor|cvodes",
                        .kinds = "trajectory",
-                       .no_sweep = "it is a word, not a number",
                        .doc = "Integrator between impacts. `taylor`: Taylor series; `cvodes`: SUNDIALS CVODES; `auto`: "
                               "the better one for the model."},
     [KEY_TIME_TOLERANCE] = {.path = "time.tolerance",
@@ -344,6 +335,23 @@ static const schema_entry rows[KEY_COUNT] = {
                                   .sweep = true,
                                   .doc = "More impacts than this per unit time, averaged from the start, end a "
                                          "trajectory with the outcome `event_limit`."},
+    [KEY_TIME_LYAPUNOV] = {.path = "time.lyapunov",
+                           FLAG,
+                           .fallback = "false",
+                           .kinds = "trajectory",
+                           .doc =
+                               "All Lyapunov exponents of the motion, and how they converge. A motion that grazes an "
+                               "obstacle has none: it ends there."},
+    [KEY_TIME_LYAPUNOV_INTERVAL] = {.path = "time.lyapunov_interval",
+                                    .type = VALUE_NUMBER,
+                                    .scalar = true,
+                                    .fallback = "1",
+                                    .low = 1e-6, /* a double resolves no less of time.duration at its largest */
+                                    .high = INFINITY,
+                                    .kinds = "trajectory",
+                                    .sweep = true,
+                                    .doc = "Time after which tangent vectors are made orthonormal again. Too long, and "
+                                           "they overflow or become parallel."},
 };
 
 static const schema_entry sweep_rows[SWEEP_KEY_COUNT] = {

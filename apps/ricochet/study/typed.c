@@ -67,7 +67,7 @@ static int read_flag(const reading *r, double *number) {
   const bool plain = n->type == YAML_SCALAR_NODE && n->data.scalar.style == YAML_PLAIN_SCALAR_STYLE;
   if (plain && document_is(r->d, r->node, "true")) {
     *number = 1;
-    return r->row->later ? refuse_value(r, " is not in this version") : 0;
+    return 0;
   }
   *number = 0;
   return plain && document_is(r->d, r->node, "false") ? 0 : refuse_value(r, "");

@@ -48,7 +48,7 @@ void schema_allowed_item(const schema_entry *entry, char *text, size_t size) {
     append_range(entry, text, size);
     break;
   case VALUE_FLAG:
-    append(text, size, entry->later ? "false" : "true or false");
+    append(text, size, "true or false");
     break;
   case VALUE_WORD:
     append_words(entry, text, size);

@@ -8,20 +8,10 @@
 #include "chain_model.h"
 #include "kind.h"
 #include "machine.h"
+#include "orbits.h"
 #include "orbits_special.h"
+#include "stability.h"
 #include "trajectory.h"
-
-const char *const orbit_outcome_names[RIC_OUTCOME_COUNT] = {
-#define X(name, text) text,
-    RIC_OUTCOME_LIST(X)
-#undef X
-};
-
-static const char *const verification_names[RIC_VERIFICATION_RESULTS] = {
-#define X(name, text) text,
-    RIC_VERIFICATION_LIST(X)
-#undef X
-};
 
 struct worker {
   study_values *values;
@@ -33,109 +23,8 @@ struct worker {
   int verifies;
   ric_verify_options verify;
   ric_verification verification; /* of the present task's orbit */
+  stability stability;
 };
-
-/* The columns, in the order of the schema page; extents follow from the axes. */
-static const column columns[] = {
-    {.name = "outcome",
-     .type = COLUMN_ENUM,
-     .names = orbit_outcome_names,
-     .name_count = RIC_OUTCOME_COUNT,
-     .units = "1",
-     .long_name = "outcome of the orbit",
-     .source = "[JAP] (9)"},
-    {.name = "reason",
-     .type = COLUMN_TEXT,
-     .text_bytes = RIC_REASON_BYTES,
-     .units = "1",
-     .long_name = "which particle, when, by how much",
-     .source = "[JAP] (9)"},
-    {.name = "q",
-     .type = COLUMN_F64,
-     .axes = {"particle"},
-     .units = "1",
-     .long_name = "position at t = 0+",
-     .source = "[JAP] (7)-(8)"},
-    {.name = "v",
-     .type = COLUMN_F64,
-     .axes = {"particle"},
-     .units = "1",
-     .long_name = "velocity at t = 0+",
-     .source = "[JAP] (7)-(8)"},
-    {.name = "impulse",
-     .type = COLUMN_F64,
-     .axes = {"impact"},
-     .units = "1",
-     .long_name = "velocity jump of each impact, at_start then at_half",
-     .source = "[JAP] (3)"},
-    {.name = "energy", .type = COLUMN_F64, .units = "1", .long_name = "total energy", .source = "[JAP] (1)"},
-    {.name = "residual",
-     .type = COLUMN_F64,
-     .units = "1",
-     .long_name = "largest violation of the orbit's equations",
-     .source = "[JAP] (7)-(8)"},
-    {.name = "clearance",
-     .type = COLUMN_F64,
-     .units = "1",
-     .long_name = "smallest gap of the particles that the pattern leaves free",
-     .source = "[JAP] (9)"},
-    {.name = "clearance_time",
-     .type = COLUMN_F64,
-     .units = "1",
-     .long_name = "time of the smallest gap, in [0, T/2]",
-     .source = "[JAP] (9)"},
-    {.name = "clearance_particle",
-     .type = COLUMN_I64,
-     .units = "1",
-     .long_name = "particle of the smallest gap, -1 when every particle is in the pattern",
-     .source = "[JAP] (9)"},
-    {.name = "condition",
-     .type = COLUMN_F64,
-     .units = "1",
-     .long_name = "condition number of the equations solved",
-     .source = "[JAP] (11)"},
-    {.name = "mode",
-     .type = COLUMN_I64,
-     .units = "1",
-     .long_name = "resonant mode of the outcomes grazing and resonant, else -1",
-     .source = "[JAP] (12)"},
-    {.name = "harmonic",
-     .type = COLUMN_I64,
-     .units = "1",
-     .long_name = "oscillations of that mode per period, else 0",
-     .source = "[JAP] (12)"},
-    {.name = "verified",
-     .type = COLUMN_ENUM,
-     .names = verification_names,
-     .name_count = RIC_VERIFICATION_RESULTS,
-     .units = "1",
-     .long_name = "what an event-driven run over one period found",
-     .source = "[JAP] (1)-(3)"},
-    {.name = "closure_error",
-     .type = COLUMN_F64,
-     .units = "1",
-     .long_name = "difference after one period, relative to the largest displacement and velocity",
-     .source = "[JAP] (1)-(3)"},
-};
-
-/* Columns of the verifier, at the end of the list. */
-enum { VERIFIER_COLUMNS = 2, COLUMNS = sizeof columns / sizeof *columns };
-
-static void lay_out(const study_values *v, table *t) {
-  size_t n = (size_t)value_number(v, KEY_MODEL_PARTICLES, 0);
-  size_t m = value_count(v, KEY_ORBIT_AT_START) + value_count(v, KEY_ORBIT_AT_HALF);
-  *t = (table){.group = "orbits", .row_axis = "task"};
-  const size_t count = value_flag(v, KEY_ORBIT_VERIFY) ? COLUMNS : COLUMNS - VERIFIER_COLUMNS;
-  for (size_t i = 0; i < count; i++) {
-    const char *axis = columns[i].axes[0];
-    bool of_particles = axis && strcmp(axis, "particle") == 0;
-    if (of_particles && !value_flag(v, KEY_ORBIT_STATES))
-      continue;
-    t->columns[t->column_count] = columns[i];
-    t->columns[t->column_count++].extents[0] = of_particles ? n : m;
-  }
-  table_lay_out(t);
-}
 
 static ric_orbit_method method_of(const study_values *v) {
   return strcmp(value_word(v, KEY_ORBIT_METHOD), "dense") == 0 ? RIC_METHOD_DENSE : RIC_METHOD_IMPULSE;
@@ -156,6 +45,7 @@ static int plan_memory(const study *s, const study_values *v, kind_plan *plan, m
     plan->memory = ric_orbit_bytes(&model.chain, pattern, method_of(v)) + 2 * (double)plan->rows.row_bytes;
     if (value_flag(v, KEY_ORBIT_VERIFY))
       plan->memory += TRAJECTORY_PARTICLE_BYTES * value_number(v, KEY_MODEL_PARTICLES, 0);
+    plan->memory += stability_bytes(v);
     code = machine_refuse_size(s, "an orbit", plan->memory, why);
   }
   ric_pattern_destroy(&pattern);
@@ -178,8 +68,10 @@ static int orbits_plan(const study *s, kind_plan *plan, message *why) {
   if (!v)
     return refuse(why, EXIT_RUN, "%s: no memory for the values of a task", study_name(s));
   *plan = (kind_plan){.outcome = "outcome"};
-  lay_out(v, &plan->rows);
+  orbits_lay_out(v, &plan->rows);
   int code = refuse_dense(s, v, why);
+  if (!code)
+    code = stability_check(s, v, why);
   if (!code)
     code = plan_memory(s, v, plan, why);
   if (!code)
@@ -191,6 +83,7 @@ static int orbits_plan(const study *s, kind_plan *plan, message *why) {
 static void orbits_close(worker **w) {
   if (!w || !*w)
     return;
+  stability_clear(&(*w)->stability);
   ric_orbit_clear(&(*w)->orbit);
   ric_orbit_solver_destroy(&(*w)->solver);
   ric_pattern_destroy(&(*w)->pattern);
@@ -228,6 +121,8 @@ static int orbits_open(const study *s, ric_poll poll, worker **out, message *why
   ric_status status = ric_orbit_solver_create(&options, &w->solver, &error);
   if (status == RIC_OK)
     status = ric_orbit_init(&w->orbit, w->model.chain.particles, m, &error);
+  if (status == RIC_OK)
+    status = stability_init(&w->stability, w->values, poll, &error);
   if (status == RIC_OK && !w->pattern_varies)
     status = chain_model_pattern(w->values, &w->pattern, &error);
   if (status == RIC_OK)
@@ -283,6 +178,7 @@ static void fill_row(const worker *w, const table *t, unsigned char *row) {
   row_put_integer(row, table_column(t, "harmonic"), o->harmonic);
   row_put_word(row, table_column(t, "verified"), (int)w->verification.result);
   row_put_number(row, table_column(t, "closure_error"), w->verification.closure_error);
+  stability_put(&w->stability, t, row);
 }
 
 static int orbits_evaluate(worker *w, const kind_plan *plan, uint64_t task, unsigned char *row, records *tails) {
@@ -295,7 +191,8 @@ static int orbits_evaluate(worker *w, const kind_plan *plan, uint64_t task, unsi
     return -1;
   if (status != RIC_OK)
     ric_orbit_fail(&w->orbit, error.message);
-  if (verify(w) == RIC_ESTOPPED)
+  if (verify(w) == RIC_ESTOPPED ||
+      stability_find(&w->stability, w->solver, &w->model.chain, w->pattern, &w->orbit) == RIC_ESTOPPED)
     return -1;
   fill_row(w, &plan->rows, row);
   return 0;

@@ -1,34 +1,61 @@
 #include "orbits_special.h"
 
+#include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "chain_model.h"
+#include "orbits.h"
+#include "stability.h"
 
 enum { MOST_POINTS = 100000 };
 
-static const char *const special_names[] = {"resonance", "singular"};
+/* What a special point is: resonances and singular points, and the kinds of ric_critical_kind behind them. */
+enum { SPECIAL_RESONANCE, SPECIAL_SINGULAR, SPECIAL_CRITICAL, SPECIAL_KINDS = SPECIAL_CRITICAL + RIC_CRITICAL_KINDS };
+static const char *const special_names[SPECIAL_KINDS] = {"resonance", "singular",
+#define X(name, text) text,
+                                                         RIC_CRITICAL_LIST(X)
+#undef X
+};
+
+/* What the number of multipliers outside the circle does as the parameter grows. */
+enum { CHANGE_NONE, CHANGE_OUTWARDS, CHANGE_INWARDS, CHANGES };
+static const char *const change_names[CHANGES] = {"none", "outwards", "inwards"};
 
 typedef struct special {
   int kind; /* index of special_names */
   double parameter;
   long mode, harmonic;
   int outcome; /* ric_outcome of the orbit exactly there */
+  ric_complex multiplier;
+  int change;
+  double uncertainty;
 } special;
 
 /* The range of the one sweep, and along what it goes. */
 typedef struct range {
   ric_along along;
   double low, high, period;
+  size_t points;
 } range;
+
+/* A search for special points, and what it has found. */
+typedef struct search {
+  const chain_model *model;
+  ric_pattern *pattern;
+  ric_orbit_solver *solver;
+  range range;
+  special *list; /* [count] */
+  size_t count;
+} search;
 
 static range range_of(const study *s, const study_values *v) {
   const study_sweep *sweep = study_sweep_at(s, 0);
   range r = {.along = sweep->key == KEY_MODEL_GAMMA ? RIC_ALONG_GAMMA : RIC_ALONG_PERIOD,
              .low = sweep->values[0],
              .high = sweep->values[0],
-             .period = value_number(v, KEY_ORBIT_PERIOD, 0)};
+             .period = value_number(v, KEY_ORBIT_PERIOD, 0),
+             .points = sweep->points};
   for (size_t i = 1; i < sweep->points; i++) {
     r.low = sweep->values[i] < r.low ? sweep->values[i] : r.low;
     r.high = sweep->values[i] > r.high ? sweep->values[i] : r.high;
@@ -38,6 +65,18 @@ static range range_of(const study *s, const study_values *v) {
 
 static ric_status count_resonances(const chain_model *m, const range *r, size_t *count, ric_error *error) {
   return ric_chain_resonances(&m->chain, r->along, r->period, r->low, r->high, NULL, 0, count, error);
+}
+
+/* Critical parameters are looked for by the method that gives all multipliers. */
+static int refuse_long_chain(const study *s, const study_values *v, message *why) {
+  const double n = value_number(v, KEY_MODEL_PARTICLES, 0);
+  char place[256];
+  if (!stability_wanted(v) || n <= RIC_REDUCED_PARTICLES)
+    return 0;
+  study_place(s, KEY_ORBIT_SPECIAL_POINTS, place, sizeof place);
+  return refuse(why, EXIT_USAGE,
+                "%s = true with orbit.stable lists critical parameters of at most %d particles, and there are %.0f",
+                place, RIC_REDUCED_PARTICLES, n);
 }
 
 int orbits_special_plan(const study *s, const study_values *v, message *why) {
@@ -51,7 +90,7 @@ int orbits_special_plan(const study *s, const study_values *v, message *why) {
   ric_status listed = count_resonances(&model, &r, &count, &error);
   chain_model_clear(&model);
   if (listed == RIC_OK && count <= MOST_POINTS)
-    return 0;
+    return refuse_long_chain(s, v, why);
   study_place(s, KEY_ORBIT_SPECIAL_POINTS, place, sizeof place);
   if (listed != RIC_OK)
     return refuse(why, EXIT_USAGE, "%s: %s", place, error.message);
@@ -59,19 +98,111 @@ int orbits_special_plan(const study *s, const study_values *v, message *why) {
                 MOST_POINTS);
 }
 
+/* --- finding them --- */
+
+/* Makes room for more points. @returns the first of them, NULL when out of memory */
+static special *extend(search *s, size_t more, ric_error *error) {
+  special *list = realloc(s->list, (s->count + more + 1) * sizeof *list);
+  if (!list) {
+    ric_fail(error, RIC_ENOMEM, "no memory for %zu special points", s->count + more);
+    return NULL;
+  }
+  s->list = list;
+  for (size_t i = 0; i < more; i++)
+    list[s->count + i] = (special){.mode = -1, .multiplier = {NAN, NAN}, .uncertainty = NAN};
+  s->count += more;
+  return list + s->count - more;
+}
+
+/* The lists of the library are fetched twice: for their number, and with room for it. */
+static ric_status add_resonances(search *s, ric_error *error) {
+  const range *r = &s->range;
+  const ric_chain *chain = &s->model->chain;
+  size_t count = 0;
+  RIC_TRY(ric_chain_resonances(chain, r->along, r->period, r->low, r->high, NULL, 0, &count, error));
+  ric_resonance *found = calloc(count + 1, sizeof *found);
+  special *list = found ? extend(s, count, error) : NULL;
+  ric_status status =
+      list ? ric_chain_resonances(chain, r->along, r->period, r->low, r->high, found, count, &count, error)
+           : RIC_ENOMEM;
+  for (size_t i = 0; status == RIC_OK && i < count; i++) {
+    list[i].kind = SPECIAL_RESONANCE;
+    list[i].parameter = found[i].parameter;
+    list[i].mode = (long)found[i].mode;
+    list[i].harmonic = (long)found[i].harmonic;
+  }
+  free(found);
+  return status;
+}
+
+static ric_status fetch_singular(const search *s, double *found, size_t *count, ric_error *error) {
+  const range *r = &s->range;
+  return ric_orbit_singular_points(s->solver, &s->model->chain, s->pattern, r->along, r->period, r->low, r->high, found,
+                                   *count, count, error);
+}
+
+static ric_status add_singular(search *s, ric_error *error) {
+  size_t count = 0;
+  RIC_TRY(fetch_singular(s, NULL, &count, error));
+  double *found = calloc(count + 1, sizeof *found);
+  special *list = found ? extend(s, count, error) : NULL;
+  ric_status status = list ? fetch_singular(s, found, &count, error) : RIC_ENOMEM;
+  for (size_t i = 0; status == RIC_OK && i < count; i++) {
+    list[i].kind = SPECIAL_SINGULAR;
+    list[i].parameter = found[i];
+  }
+  free(found);
+  return status;
+}
+
+/* The search is long: it is repeated only in the unlikely case of more than a few. Its grid is that of the sweep. */
+static ric_status fetch_critical(const search *s, ric_critical **found, size_t *count, ric_error *error) {
+  const range *r = &s->range;
+  size_t room = 0;
+  ric_status status = RIC_OK;
+  *count = 64;
+  *found = NULL;
+  while (status == RIC_OK && *count > room) {
+    room = *count;
+    free(*found);
+    *found = calloc(room, sizeof **found);
+    if (!*found)
+      return ric_fail(error, RIC_ENOMEM, "no memory for %zu critical parameters", room);
+    status = ric_orbit_critical_points(s->solver, &s->model->chain, s->pattern, r->along, r->period, r->low, r->high,
+                                       r->points, *found, room, count, error);
+  }
+  return status;
+}
+
+static ric_status add_critical(search *s, ric_error *error) {
+  ric_critical *found;
+  size_t count;
+  ric_status status = fetch_critical(s, &found, &count, error);
+  special *list = status == RIC_OK ? extend(s, count, error) : NULL;
+  for (size_t i = 0; list && i < count; i++) {
+    list[i].kind = SPECIAL_CRITICAL + (int)found[i].kind;
+    list[i].parameter = found[i].parameter;
+    list[i].multiplier = found[i].mu;
+    list[i].change = found[i].outwards ? CHANGE_OUTWARDS : CHANGE_INWARDS;
+    list[i].uncertainty = found[i].uncertainty;
+  }
+  free(found);
+  return status == RIC_OK && !list ? RIC_ENOMEM : status;
+}
+
 /* What becomes of the orbit exactly there: most resonances do nothing to a pattern, and not every zero of the
  * determinant is driven. */
-static ric_status judge(const chain_model *m, const ric_pattern *pattern, ric_orbit_solver *solver, const range *r,
-                        special *list, size_t count, ric_error *error) {
+static ric_status judge(search *s, ric_error *error) {
+  const range *r = &s->range;
   ric_orbit orbit;
-  ric_chain chain = m->chain;
-  ric_status status = ric_orbit_init(&orbit, chain.particles, ric_pattern_impacts(pattern), error);
-  for (size_t i = 0; i < count && status == RIC_OK; i++) {
+  ric_chain chain = s->model->chain;
+  ric_status status = ric_orbit_init(&orbit, chain.particles, ric_pattern_impacts(s->pattern), error);
+  for (size_t i = 0; i < s->count && status == RIC_OK; i++) {
     if (r->along == RIC_ALONG_GAMMA)
-      chain.gamma = list[i].parameter;
-    status = ric_orbit_solve(solver, &chain, pattern, r->along == RIC_ALONG_GAMMA ? r->period : list[i].parameter,
-                             &orbit, error);
-    list[i].outcome = (int)orbit.outcome;
+      chain.gamma = s->list[i].parameter;
+    status = ric_orbit_solve(s->solver, &chain, s->pattern,
+                             r->along == RIC_ALONG_GAMMA ? r->period : s->list[i].parameter, &orbit, error);
+    s->list[i].outcome = (int)orbit.outcome;
   }
   ric_orbit_clear(&orbit);
   return status;
@@ -86,56 +217,27 @@ static int by_parameter(const void *a, const void *b) {
   return x->mode < y->mode ? -1 : x->mode > y->mode;
 }
 
-/* Both lists: counted when the arrays are NULL, with counts of 0, and written when there is room for them. */
-static ric_status fetch_points(const chain_model *m, const ric_pattern *pattern, ric_orbit_solver *solver,
-                               const range *r, ric_resonance *resonances, size_t *poles, double *singular,
-                               size_t *zeros, ric_error *error) {
-  RIC_TRY(ric_chain_resonances(&m->chain, r->along, r->period, r->low, r->high, resonances, *poles, poles, error));
-  return ric_orbit_singular_points(solver, &m->chain, pattern, r->along, r->period, r->low, r->high, singular, *zeros,
-                                   zeros, error);
+static ric_status find_all(search *s, bool critical, ric_error *error) {
+  RIC_TRY(add_resonances(s, error));
+  RIC_TRY(add_singular(s, error));
+  if (critical && s->range.low < s->range.high) /* else nothing lies between */
+    RIC_TRY(add_critical(s, error));
+  if (s->count > 0)
+    qsort(s->list, s->count, sizeof *s->list, by_parameter);
+  return judge(s, error);
 }
 
-static void merge(const ric_resonance *resonances, size_t poles, const double *singular, size_t zeros, special *list) {
-  for (size_t i = 0; i < poles; i++)
-    list[i] = (special){.parameter = resonances[i].parameter,
-                        .mode = (long)resonances[i].mode,
-                        .harmonic = (long)resonances[i].harmonic};
-  for (size_t i = 0; i < zeros; i++)
-    list[poles + i] = (special){.kind = 1, .parameter = singular[i], .mode = -1};
-  qsort(list, poles + zeros, sizeof *list, by_parameter);
-}
-
-/* Both lists merged into [count]; NULL on failure. */
-static special *list_points(const chain_model *m, const ric_pattern *pattern, ric_orbit_solver *solver, const range *r,
-                            size_t *count, ric_error *error) {
-  size_t poles = 0, zeros = 0;
-  if (fetch_points(m, pattern, solver, r, NULL, &poles, NULL, &zeros, error) != RIC_OK)
-    return NULL;
-  ric_resonance *resonances = calloc(poles + 1, sizeof *resonances);
-  double *singular = calloc(zeros + 1, sizeof *singular);
-  special *list = calloc(poles + zeros + 1, sizeof *list);
-  bool fetched = resonances && singular && list &&
-                 fetch_points(m, pattern, solver, r, resonances, &poles, singular, &zeros, error) == RIC_OK;
-  if (fetched) {
-    *count = poles + zeros;
-    merge(resonances, poles, singular, zeros, list);
-  } else {
-    free(list);
-    list = NULL;
-  }
-  free(resonances);
-  free(singular);
-  return list;
-}
+/* --- the table --- */
 
 static const column columns[] = {
     {.name = "kind",
      .type = COLUMN_ENUM,
      .names = special_names,
-     .name_count = 2,
+     .name_count = SPECIAL_KINDS,
      .units = "1",
-     .long_name = "resonance of a mode, or zero of the contact determinant",
-     .source = "[JAP] (11)-(12)"},
+     .long_name = "resonance of a mode, zero of the contact determinant, or where multipliers leave the circle or come "
+                  "back",
+     .source = "[JAP] (11)-(12), (16)"},
     {.name = "parameter",
      .type = COLUMN_F64,
      .units = "1",
@@ -156,59 +258,94 @@ static const column columns[] = {
      .source = "[JAP] (12)"},
 };
 
-static void lay_out(table *t) {
+static const column critical_columns[] = {
+    {.name = "multiplier",
+     .type = COLUMN_COMPLEX,
+     .units = "1",
+     .long_name = "critical multiplier on the unit circle, in the upper half plane; NaN for other points",
+     .source = "[JAP] (16)"},
+    {.name = "change",
+     .type = COLUMN_ENUM,
+     .names = change_names,
+     .name_count = CHANGES,
+     .units = "1",
+     .long_name = "way of the multipliers as the parameter grows",
+     .source = "[JAP] (16)"},
+    {.name = "uncertainty",
+     .type = COLUMN_F64,
+     .units = "1",
+     .long_name = "of a critical parameter: half the width of its last bracket, or rounding; NaN for other points",
+     .source = "[JAP] (16)"},
+};
+
+static void lay_out(table *t, bool critical) {
   *t = (table){.group = "special", .row_axis = "special_point"};
-  for (size_t i = 0; i < sizeof columns / sizeof *columns; i++)
-    t->columns[t->column_count++] = columns[i];
+  table_add(t, columns, sizeof columns / sizeof *columns, NULL, 0);
+  if (critical)
+    table_add(t, critical_columns, sizeof critical_columns / sizeof *critical_columns, NULL, 0);
   table_lay_out(t);
 }
 
-static int fill(extra_rows *extra, const special *list, size_t count) {
+static void put_point(const special *point, const table *t, unsigned char *row) {
+  row_put_word(row, table_column(t, "kind"), point->kind);
+  row_put_number(row, table_column(t, "parameter"), point->parameter);
+  row_put_word(row, table_column(t, "outcome"), point->outcome);
+  row_put_integer(row, table_column(t, "mode"), point->mode);
+  row_put_integer(row, table_column(t, "harmonic"), point->harmonic);
+  row_put_numbers(row, table_column(t, "multiplier"), &point->multiplier.re);
+  row_put_word(row, table_column(t, "change"), point->change);
+  row_put_number(row, table_column(t, "uncertainty"), point->uncertainty);
+}
+
+static ric_status fill(extra_rows *extra, const search *s, ric_error *error) {
   const table *t = &extra->layout;
-  extra->rows = calloc(count + 1, t->row_bytes);
+  extra->rows = calloc(s->count + 1, t->row_bytes);
   if (!extra->rows)
-    return -1;
-  extra->count = count;
-  for (size_t i = 0; i < count; i++) {
-    unsigned char *row = extra->rows + i * t->row_bytes;
-    row_put_word(row, table_column(t, "kind"), list[i].kind);
-    row_put_number(row, table_column(t, "parameter"), list[i].parameter);
-    row_put_word(row, table_column(t, "outcome"), list[i].outcome);
-    row_put_integer(row, table_column(t, "mode"), list[i].mode);
-    row_put_integer(row, table_column(t, "harmonic"), list[i].harmonic);
-  }
-  return 0;
+    return ric_fail(error, RIC_ENOMEM, "no memory for %zu special points", s->count);
+  extra->count = s->count;
+  for (size_t i = 0; i < s->count; i++)
+    put_point(&s->list[i], t, extra->rows + i * t->row_bytes);
+  return RIC_OK;
+}
+
+/* --- for a study --- */
+
+static ric_status set_up(search *s, chain_model *model, const study_values *v, ric_poll poll, ric_error *error) {
+  ric_orbit_options options = ric_orbit_options_default();
+  options.poll = poll;
+  s->model = model;
+  if (chain_model_init(model, v) != 0)
+    return ric_fail(error, RIC_ENOMEM, "no memory for the floors");
+  RIC_TRY(chain_model_pattern(v, &s->pattern, error));
+  return ric_orbit_solver_create(&options, &s->solver, error);
+}
+
+static int list_points(const study *s, const study_values *v, ric_poll poll, extra_rows *extra, message *why) {
+  ric_error error = {.message = "out of memory"};
+  chain_model model = {0};
+  search found = {.range = range_of(s, v)};
+  lay_out(&extra->layout, stability_wanted(v));
+  ric_status status = set_up(&found, &model, v, poll, &error);
+  if (status == RIC_OK)
+    status = find_all(&found, stability_wanted(v), &error);
+  if (status == RIC_OK)
+    status = fill(extra, &found, &error);
+  free(found.list);
+  ric_orbit_solver_destroy(&found.solver);
+  ric_pattern_destroy(&found.pattern);
+  chain_model_clear(&model);
+  if (status == RIC_OK)
+    return 0;
+  return refuse(why, status == RIC_ESTOPPED ? EXIT_STOPPED : EXIT_RUN, "%s: special points: %s", study_name(s),
+                error.message);
 }
 
 int orbits_special(const study *s, ric_poll poll, extra_rows *extra, message *why) {
-  *extra = (extra_rows){0};
-  ric_error error = {.message = "out of memory"};
-  chain_model model = {0};
-  ric_pattern *pattern = NULL;
-  ric_orbit_solver *solver = NULL;
-  special *list = NULL;
-  size_t count = 0;
-  int done = 0;
-  ric_orbit_options options = ric_orbit_options_default();
-  options.poll = poll;
   study_values *v = study_values_create(s);
-  if (v && !value_flag(v, KEY_ORBIT_SPECIAL_POINTS)) {
-    study_values_destroy(&v);
-    return 0;
-  }
-  if (v && chain_model_init(&model, v) == 0 && chain_model_pattern(v, &pattern, &error) == RIC_OK &&
-      ric_orbit_solver_create(&options, &solver, &error) == RIC_OK) {
-    range r = range_of(s, v);
-    lay_out(&extra->layout);
-    list = list_points(&model, pattern, solver, &r, &count, &error);
-    done = list && judge(&model, pattern, solver, &r, list, count, &error) == RIC_OK && fill(extra, list, count) == 0;
-  }
-  free(list);
-  ric_orbit_solver_destroy(&solver);
-  ric_pattern_destroy(&pattern);
-  chain_model_clear(&model);
+  *extra = (extra_rows){0};
+  if (!v)
+    return refuse(why, EXIT_RUN, "%s: no memory for the values of a task", study_name(s));
+  int code = value_flag(v, KEY_ORBIT_SPECIAL_POINTS) ? list_points(s, v, poll, extra, why) : 0;
   study_values_destroy(&v);
-  return done ? 0
-              : refuse(why, error.status == RIC_ESTOPPED ? EXIT_STOPPED : EXIT_RUN, "%s: special points: %s",
-                       study_name(s), error.message);
+  return code;
 }

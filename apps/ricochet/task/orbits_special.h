@@ -1,11 +1,8 @@
-/* Resonances and singular points along the swept parameter of an `orbits` study: the table `special`. */
+/* Resonances, singular points and critical parameters along the sweep of an `orbits` study: the table `special`. */
 #ifndef RICOCHET_APP_ORBITS_SPECIAL_H
 #define RICOCHET_APP_ORBITS_SPECIAL_H
 
 #include "kind.h"
-
-/** Words of ric_outcome. */
-extern const char *const orbit_outcome_names[RIC_OUTCOME_COUNT];
 
 /** Refuses `special_points: true` where the list would be too long. */
 int orbits_special_plan(const study *s, const study_values *v, message *why);

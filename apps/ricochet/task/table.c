@@ -1,5 +1,6 @@
 #include "table.h"
 
+#include <stdbool.h>
 #include <stdint.h>
 #include <string.h>
 
@@ -8,6 +9,8 @@ size_t column_value_bytes(const column *c) {
   case COLUMN_F64:
   case COLUMN_I64:
     return 8;
+  case COLUMN_COMPLEX:
+    return 16;
   case COLUMN_ENUM:
     return 1;
   case COLUMN_TEXT:
@@ -34,6 +37,27 @@ size_t column_bytes(const column *c) {
   return column_values(c) * column_value_bytes(c);
 }
 
+/* Sets the extents of a column's axes; false when one of them is not in the list. */
+static bool set_extents(column *c, const table_axis *axes, size_t axis_count) {
+  for (int i = 0; i < column_axes(c); i++) {
+    size_t k = 0;
+    while (k < axis_count && strcmp(axes[k].name, c->axes[i]) != 0)
+      k++;
+    if (k == axis_count)
+      return false;
+    c->extents[i] = axes[k].extent;
+  }
+  return true;
+}
+
+void table_add(table *t, const column *columns, size_t count, const table_axis *axes, size_t axis_count) {
+  for (size_t i = 0; i < count; i++) {
+    column added = columns[i];
+    if (set_extents(&added, axes, axis_count))
+      t->columns[t->column_count++] = added;
+  }
+}
+
 size_t table_lay_out(table *t) {
   size_t at = 0;
   for (size_t i = 0; i < t->column_count; i++) {
@@ -50,6 +74,17 @@ const column *table_column(const table *t, const char *name) {
     if (strcmp(t->columns[i].name, name) == 0)
       return &t->columns[i];
   return NULL;
+}
+
+void table_put_attribute(table *t, const char *name, const char *attribute, double value) {
+  for (size_t i = 0; i < t->column_count; i++) {
+    column_attribute *free_one = t->columns[i].attributes;
+    if (strcmp(t->columns[i].name, name) != 0)
+      continue;
+    while (free_one->name)
+      free_one++;
+    *free_one = (column_attribute){attribute, value};
+  }
 }
 
 void row_put_numbers(unsigned char *row, const column *c, const double *values) {

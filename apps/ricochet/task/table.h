@@ -11,11 +11,21 @@
 typedef enum column_type {
   COLUMN_F64,
   COLUMN_I64,
-  COLUMN_ENUM, /* one signed byte; names give the values 0, 1, 2, ... */
-  COLUMN_TEXT  /* fixed length, zero padded */
+  COLUMN_COMPLEX, /* two doubles, real and imaginary part; in a file the compound {r, i} that h5py reads as complex */
+  COLUMN_ENUM,    /* one signed byte; names give the values 0, 1, 2, ... */
+  COLUMN_TEXT     /* fixed length, zero padded */
 } column_type;
 
-enum { COLUMN_MOST_AXES = 2 /* besides that of the rows */ };
+enum {
+  COLUMN_MOST_AXES = 2, /* besides that of the rows */
+  COLUMN_MOST_ATTRIBUTES = 4
+};
+
+/** A number that belongs to a column as a whole, such as a tolerance behind it. */
+typedef struct column_attribute {
+  const char *name; /* NULL: none */
+  double value;
+} column_attribute;
 
 typedef struct column {
   const char *name; /* data set in the table's group */
@@ -26,6 +36,7 @@ typedef struct column {
   const char *const *names;           /* words of a COLUMN_ENUM */
   size_t name_count;
   const char *units, *long_name, *source;
+  column_attribute attributes[COLUMN_MOST_ATTRIBUTES]; /* the first ones that have a name */
   size_t offset; /* of the first value in a row; set by table_lay_out, a multiple of 8 */
 } column;
 
@@ -39,7 +50,13 @@ typedef struct table {
   size_t row_bytes;
 } table;
 
-/** Bytes of one value of a column: 8, 1, or text_bytes. */
+/** A dimension scale and its extent, as columns of several tables share it. */
+typedef struct table_axis {
+  const char *name;
+  size_t extent;
+} table_axis;
+
+/** Bytes of one value of a column: 8, 16 for a complex one, 1 for a word, or text_bytes. */
 size_t column_value_bytes(const column *c);
 
 /** Number of further axes, 0 to COLUMN_MOST_AXES. */
@@ -51,11 +68,19 @@ size_t column_values(const column *c);
 /** Bytes of a row's values. */
 size_t column_bytes(const column *c);
 
+/** Appends copies of columns, with the extents of their axes. A column with an axis that is not among `axes` is left
+ *  out: what a study does not ask for has no axis.
+ *  @param axes  [axis_count] */
+void table_add(table *t, const column *columns, size_t count, const table_axis *axes, size_t axis_count);
+
 /** Sets the offsets and row_bytes; returns row_bytes. */
 size_t table_lay_out(table *t);
 
 /** Column by name, NULL when the table has none. */
 const column *table_column(const table *t, const char *name);
+
+/** Gives a column of the table, if it has one of this name, a further attribute. */
+void table_put_attribute(table *t, const char *name, const char *attribute, double value);
 
 /* Writing into a row. A NULL column (a table without it) is skipped, so that optional columns need no test. */
 void row_put_numbers(unsigned char *row, const column *c, const double *values);

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "chain_model.h"
+#include "convergence.h"
 #include "lattice_model.h"
 #include "machine.h"
 
@@ -28,6 +29,8 @@ typedef struct sight {
   const kind_plan *plan;
   records *tails;
   ric_sampler sampler;
+  double *exponents; /* of the row; NULL when they are not asked for */
+  convergence converged;
   int no_memory;
 } sight;
 
@@ -39,11 +42,20 @@ typedef struct verdict {
 
 /* --- before the tasks --- */
 
+static ric_flow_method flow_of(const study_values *v) {
+  const char *word = value_word(v, KEY_TIME_FLOW);
+  if (strcmp(word, "taylor") == 0)
+    return RIC_FLOW_TAYLOR;
+  return strcmp(word, "cvodes") == 0 ? RIC_FLOW_CVODES : RIC_FLOW_AUTO;
+}
+
 static int plan_memory(const study *s, const study_values *v, kind_plan *plan, message *why) {
-  const double n = value_number(v, KEY_MODEL_PARTICLES, 0), samples = value_number(v, KEY_TIME_SAMPLES, 0);
-  plan->memory =
-      2 * trajectory_row_bytes(n, samples) + 8 * samples + n * (TRAJECTORY_PARTICLE_BYTES + LATTICE_MODEL_BYTES);
-  int code = machine_refuse_size(s, "a trajectory", plan->memory, why);
+  const trajectory_shape shape = trajectory_shape_of(v);
+  const char *what = shape.exponents > 0 ? "a trajectory with its tangent vectors" : "a trajectory";
+  plan->memory = 2 * trajectory_row_bytes(&shape) + 8 * shape.samples +
+                 shape.particles * (TRAJECTORY_PARTICLE_BYTES + LATTICE_MODEL_BYTES) +
+                 convergence_bytes(shape.exponents, flow_of(v) == RIC_FLOW_CVODES);
+  int code = machine_refuse_size(s, what, plan->memory, why);
   chain_model chain = {0};
   ric_pattern *pattern = NULL;
   if (code || !value_present(v, KEY_ORBIT_PERIOD))
@@ -52,7 +64,7 @@ static int plan_memory(const study *s, const study_values *v, kind_plan *plan, m
     code = refuse(why, EXIT_RUN, "%s: no memory for the floors", study_name(s));
   else if (chain_model_pattern(v, &pattern, NULL) == RIC_OK) {
     plan->memory += ric_orbit_bytes(&chain.chain, pattern, RIC_METHOD_IMPULSE);
-    code = machine_refuse_size(s, "a trajectory", plan->memory, why);
+    code = machine_refuse_size(s, what, plan->memory, why);
   }
   ric_pattern_destroy(&pattern);
   chain_model_clear(&chain);
@@ -152,13 +164,6 @@ static ric_status read_start(worker *w, verdict *found) {
   return RIC_OK;
 }
 
-static ric_flow_method flow_of(const study_values *v) {
-  const char *word = value_word(v, KEY_TIME_FLOW);
-  if (strcmp(word, "taylor") == 0)
-    return RIC_FLOW_TAYLOR;
-  return strcmp(word, "cvodes") == 0 ? RIC_FLOW_CVODES : RIC_FLOW_AUTO;
-}
-
 static ric_trajectory_options options_of(const worker *w) {
   ric_trajectory_options options = ric_trajectory_options_default();
   const double tolerance = value_number(w->values, KEY_TIME_TOLERANCE, 0);
@@ -193,15 +198,24 @@ static int see_event(const ric_event *event, void *user) {
   return seen->no_memory;
 }
 
-static ric_status run(worker *w, sight *seen, const ric_system *system, ric_run *did, ric_error *error) {
+/* Along the trajectory, with its exponents where they are asked for. */
+static ric_status follow(worker *w, sight *seen, ric_trajectory *trajectory, ric_run *did, ric_error *error) {
   const ric_observer observer = {.segment = see_segment, .event = see_event, .user = seen};
+  const double end = w->times[w->samples - 1];
+  if (!seen->exponents)
+    return ric_trajectory_run(trajectory, end, &observer, did, error);
+  return convergence_run(&seen->converged, trajectory, end, value_number(w->values, KEY_TIME_LYAPUNOV_INTERVAL, 0),
+                         &observer, seen->exponents, did, error);
+}
+
+static ric_status run(worker *w, sight *seen, const ric_system *system, ric_run *did, ric_error *error) {
   const ric_trajectory_options options = options_of(w);
   ric_trajectory *trajectory = NULL;
   ric_status status = ric_trajectory_create(system, &options, &trajectory, error);
   if (status == RIC_OK)
     status = ric_trajectory_start(trajectory, 0, w->q, w->v, error);
   if (status == RIC_OK)
-    status = ric_trajectory_run(trajectory, w->times[w->samples - 1], &observer, did, error);
+    status = follow(w, seen, trajectory, did, error);
   if (status == RIC_OK)
     ric_sampler_finish(&seen->sampler, trajectory);
   ric_trajectory_destroy(&trajectory);
@@ -221,7 +235,7 @@ static ric_status move(worker *w, sight *seen, ric_run *did, verdict *found) {
     return status;
   if (status != RIC_OK)
     note_outcome(found, TRAJECTORY_REFUSED, error.message);
-  else if (seen->no_memory)
+  else if (seen->no_memory || seen->converged.no_memory)
     note_outcome(found, TRAJECTORY_REFUSED, "no memory for the events");
   else
     note_outcome(found, (int)did->outcome, did->reason);
@@ -232,7 +246,7 @@ static ric_status move(worker *w, sight *seen, ric_run *did, verdict *found) {
 
 static void fill_nan(unsigned char *row, const column *c) {
   double *numbers = row_numbers(row, c);
-  for (size_t i = 0; i < column_values(c); i++)
+  for (size_t i = 0; numbers && i < column_values(c); i++)
     numbers[i] = NAN;
 }
 
@@ -246,15 +260,18 @@ static void fill_times(worker *w) {
 /* The sampler writes states into the row itself. */
 static sight begin_row(worker *w, const kind_plan *plan, unsigned char *row, records *tails) {
   const table *t = &plan->rows;
-  const column *q = table_column(t, "q"), *v = table_column(t, "v");
+  const column *q = table_column(t, "q"), *v = table_column(t, "v"), *exponents = table_column(t, "lyapunov");
   memset(row, 0, t->row_bytes);
   fill_times(w);
   row_put_numbers(row, table_column(t, "t"), w->times);
   fill_nan(row, q);
   fill_nan(row, v);
+  fill_nan(row, exponents);
   return (sight){.worker = w,
                  .plan = plan,
                  .tails = tails,
+                 .exponents = row_numbers(row, exponents),
+                 .converged = {.layout = &plan->tails[TAIL_LYAPUNOV].records, .to = &tails[TAIL_LYAPUNOV]},
                  .sampler = {.times = w->times,
                              .count = w->samples,
                              .coordinates = w->model.lattice.particles,
@@ -323,11 +340,11 @@ static int trajectory_plan(const study *s, kind_plan *plan, message *why) {
   study_values *v = study_values_create(s);
   if (!v)
     return refuse(why, EXIT_RUN, "%s: no memory for the values of a task", study_name(s));
+  const trajectory_shape shape = trajectory_shape_of(v);
   *plan = (kind_plan){.outcome = "outcome"};
   int code = plan_memory(s, v, plan, why);
   if (!code)
-    trajectory_lay_out((size_t)value_number(v, KEY_MODEL_PARTICLES, 0), (size_t)value_number(v, KEY_TIME_SAMPLES, 0),
-                       plan);
+    trajectory_lay_out(&shape, plan);
   study_values_destroy(&v);
   return code ? code : check_only_task(s, why);
 }

@@ -8,17 +8,24 @@
  *  bytes with rigid floors (ricochet_bench motion_1000000), 130 more per compliant obstacle. */
 enum { TRAJECTORY_PARTICLE_BYTES = 512 };
 
-/** Tails of a trajectory. */
-enum { TAIL_IMPACTS, TAIL_EVENTS, TRAJECTORY_TAILS };
+/** Tails of a trajectory; that of the exponents is there when they are asked for. */
+enum { TAIL_IMPACTS, TAIL_EVENTS, TAIL_LYAPUNOV, TRAJECTORY_TAILS };
 
 /** Outcomes: those of a run, and of tasks without one. */
 enum { TRAJECTORY_NO_ORBIT = RIC_RUN_OUTCOMES, TRAJECTORY_REFUSED, TRAJECTORY_OUTCOMES };
 
+/** What the sizes of rows and tails follow from. */
+typedef struct trajectory_shape {
+  double particles, samples, exponents; /* exponents: 0 when they are not asked for */
+} trajectory_shape;
+
+trajectory_shape trajectory_shape_of(const study_values *v);
+
 /** Bytes of a row, as a number that cannot overflow. */
-double trajectory_row_bytes(double particles, double samples);
+double trajectory_row_bytes(const trajectory_shape *shape);
 
 /** Lays out the row and the tails. */
-void trajectory_lay_out(size_t particles, size_t samples, kind_plan *plan);
+void trajectory_lay_out(const trajectory_shape *shape, kind_plan *plan);
 
 /** Writes an event into a record of the tail. @param side  of its obstacle, +1 floor, -1 wall */
 void trajectory_put_event(const table *t, const ric_event *event, int side, unsigned char *record);

@@ -18,7 +18,7 @@ static const char *const event_names[RIC_EVENT_KINDS] = {
 #undef X
 };
 
-/* The columns, in the order of the schema page; extents follow from the axes. */
+/* The columns, in the order of the schema page. */
 static const column row_columns[] = {
     {.name = "outcome",
      .type = COLUMN_ENUM,
@@ -73,6 +73,12 @@ static const column row_columns[] = {
      .units = "1",
      .long_name = "evaluations of the forces",
      .source = "count"},
+    {.name = "lyapunov",
+     .type = COLUMN_F64,
+     .axes = {"exponent"},
+     .units = "1",
+     .long_name = "Lyapunov exponents per unit of time, NaN where none are known",
+     .source = "logarithms of the diagonal of R"},
 };
 
 static const column impact_columns[] = {
@@ -141,41 +147,66 @@ static const column event_columns[] = {
      .source = "[FN97] (2.9)"},
 };
 
+static const column lyapunov_columns[] = {
+    {.name = "lyapunov_time",
+     .type = COLUMN_F64,
+     .units = "1",
+     .long_name = "time over which the exponents were taken",
+     .source = "logarithms of the diagonal of R"},
+    {.name = "lyapunov_history",
+     .type = COLUMN_F64,
+     .axes = {"exponent"},
+     .units = "1",
+     .long_name = "Lyapunov exponents by then",
+     .source = "logarithms of the diagonal of R"},
+};
+
 enum {
   ROW_COLUMNS = sizeof row_columns / sizeof *row_columns,
   IMPACT_COLUMNS = sizeof impact_columns / sizeof *impact_columns,
-  EVENT_COLUMNS = sizeof event_columns / sizeof *event_columns
+  EVENT_COLUMNS = sizeof event_columns / sizeof *event_columns,
+  LYAPUNOV_COLUMNS = sizeof lyapunov_columns / sizeof *lyapunov_columns
 };
 
-double trajectory_row_bytes(double particles, double samples) {
-  return 8 * samples * (1 + 2 * particles) + RIC_REASON_BYTES + 8 * ROW_COLUMNS;
+trajectory_shape trajectory_shape_of(const study_values *v) {
+  const double particles = value_number(v, KEY_MODEL_PARTICLES, 0);
+  return (trajectory_shape){.particles = particles,
+                            .samples = value_number(v, KEY_TIME_SAMPLES, 0),
+                            .exponents = value_flag(v, KEY_TIME_LYAPUNOV) ? 2 * particles : 0};
 }
 
-static void lay_out_row(size_t particles, size_t samples, table *t) {
-  *t = (table){.group = "trajectory", .row_axis = "task", .column_count = ROW_COLUMNS};
-  for (size_t i = 0; i < ROW_COLUMNS; i++) {
-    t->columns[i] = row_columns[i];
-    for (int k = 0; k < column_axes(&t->columns[i]); k++)
-      t->columns[i].extents[k] = strcmp(t->columns[i].axes[k], "sample") == 0 ? samples : particles;
+double trajectory_row_bytes(const trajectory_shape *shape) {
+  return 8 * shape->samples * (1 + 2 * shape->particles) + 8 * shape->exponents + RIC_REASON_BYTES + 8 * ROW_COLUMNS;
+}
+
+void trajectory_lay_out(const trajectory_shape *shape, kind_plan *plan) {
+  static const struct {
+    const char *axis;
+    const column *columns;
+    size_t count;
+    const char *offset, *meaning;
+  } tails[TRAJECTORY_TAILS] = {[TAIL_IMPACTS] = {"impact_row", impact_columns, IMPACT_COLUMNS, "impact_offset",
+                                                 "impacts of a task: from its offset up to the next"},
+                               [TAIL_EVENTS] = {"event_row", event_columns, EVENT_COLUMNS, "event_offset",
+                                                "other events of a task: from its offset up to the next"},
+                               [TAIL_LYAPUNOV] = {"lyapunov_row", lyapunov_columns, LYAPUNOV_COLUMNS, "lyapunov_offset",
+                                                  "convergence of a task's exponents: from its offset up to the next"}};
+  const table_axis axes[] = {{"sample", (size_t)shape->samples},
+                             {"particle", (size_t)shape->particles},
+                             {"exponent", (size_t)shape->exponents}};
+  const size_t axis_count = shape->exponents > 0 ? 3 : 2;
+  plan->rows = (table){.group = "trajectory", .row_axis = "task"};
+  table_add(&plan->rows, row_columns, ROW_COLUMNS, axes, axis_count);
+  table_lay_out(&plan->rows);
+  plan->tail_count = shape->exponents > 0 ? TRAJECTORY_TAILS : TAIL_LYAPUNOV;
+  for (size_t k = 0; k < plan->tail_count; k++) {
+    table *t = &plan->tails[k].records;
+    plan->tails[k] = (tail){.records = {.group = "trajectory", .row_axis = tails[k].axis},
+                            .offset = tails[k].offset,
+                            .meaning = tails[k].meaning};
+    table_add(t, tails[k].columns, tails[k].count, axes, axis_count);
+    table_lay_out(t);
   }
-  table_lay_out(t);
-}
-
-static void lay_out_records(const char *axis, const column *columns, size_t count, table *t) {
-  *t = (table){.group = "trajectory", .row_axis = axis, .column_count = count};
-  memcpy(t->columns, columns, count * sizeof *columns);
-  table_lay_out(t);
-}
-
-void trajectory_lay_out(size_t particles, size_t samples, kind_plan *plan) {
-  lay_out_row(particles, samples, &plan->rows);
-  plan->tail_count = TRAJECTORY_TAILS;
-  plan->tails[TAIL_IMPACTS] =
-      (tail){.offset = "impact_offset", .meaning = "impacts of a task: from its offset up to the next"};
-  plan->tails[TAIL_EVENTS] =
-      (tail){.offset = "event_offset", .meaning = "other events of a task: from its offset up to the next"};
-  lay_out_records("impact_row", impact_columns, IMPACT_COLUMNS, &plan->tails[TAIL_IMPACTS].records);
-  lay_out_records("event_row", event_columns, EVENT_COLUMNS, &plan->tails[TAIL_EVENTS].records);
 }
 
 void trajectory_put_event(const table *t, const ric_event *event, int side, unsigned char *record) {

@@ -14,9 +14,9 @@
 
 typedef struct ric_lyapunov_options {
   size_t count;     /* exponents wanted; 0 (default): all n + m */
-  double interval;  /* time from one factorisation to the next, > 0; default 1. Short enough for tangent vectors that
-                       neither overflow nor become parallel: one that lies in the span of those before it within 1e-13
-                       counts as put out */
+  double interval;  /* time from one factorisation to the next, > 1e-12 (1 + |end|); default 1. Short enough for tangent
+                       vectors that  neither overflow nor become parallel: one that lies in the span of those before it
+                       within 1e-13  counts as put out */
   double transient; /* time, >= 0, after which the sums begin; default 0 */
   /** Sees the exponents after every factorisation, NULL for none; non-zero ends the run with the outcome `ended`.
    *  @param time  since the sums began
