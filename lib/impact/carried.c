@@ -109,7 +109,7 @@ static ric_status gather_group(ric_trajectory *tr, size_t which, size_t hits, ju
     bool pushes = i == which || (hits == 1 && contact->impulse > 0);
     if (!pushes)
       continue;
-    c->restitution[c->group.count] = sticks ? 0 : tr->system->model->restitution(tr->system, contact->obstacle);
+    c->restitution[c->group.count] = sticks ? 0 : contact->restitution;
     RIC_TRY(index_list_add(&c->group, contact->obstacle, error));
   }
   *group = (jump_group){c->group.items, c->restitution, c->group.count, sticks};

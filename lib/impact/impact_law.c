@@ -7,6 +7,9 @@
 
 static const double coupling_tol = 1e-13; /* of g_i^T M^-1 g_j against the diagonal: below it, rounding */
 
+/* Accelerations count as zero up to so much of the terms they are the sum of: those of users' gaps are differences. */
+static const double acceleration_tol = 1e-7;
+
 ric_status impact_solver_init(impact_solver *solver, const ric_system *system, ric_error *error) {
   *solver = (impact_solver){.system = system};
   if (system->model->direction)
@@ -96,7 +99,7 @@ static double work_lost(const impact *c, double offset) {
 
 /* [FN97] (2.9) for one contact alone. */
 static ric_status apply_alone(impact_solver *s, double t, const double *q, double *u, impact *c, ric_error *error) {
-  double e = s->system->model->restitution(s->system, c->obstacle);
+  double e = c->restitution;
   RIC_TRY(find_direction(s, 0, c->obstacle, t, q, error));
   RIC_TRY(read_rate(s, t, q, u, c->obstacle, &c->rate, error));
   double inverse_mass = product(&s->directions[0], &s->directions[0]);
@@ -119,7 +122,7 @@ static ric_status set_up(impact_solver *s, double t, const double *q, const doub
   for (size_t i = 0; i < count; i++) {
     RIC_TRY(find_direction(s, i, contacts[i].obstacle, t, q, error));
     RIC_TRY(read_rate(s, t, q, u, contacts[i].obstacle, &contacts[i].rate, error));
-    s->rhs[i] = (1 + s->system->model->restitution(s->system, contacts[i].obstacle)) * contacts[i].rate;
+    s->rhs[i] = (1 + contacts[i].restitution) * contacts[i].rate;
   }
   fill_matrix(s, count);
   return RIC_OK;
@@ -253,28 +256,59 @@ ric_status impact_reflect(impact_solver *solver, double t, const double *q, doub
   return RIC_OK;
 }
 
-ric_status impact_direction(impact_solver *solver, double t, const double *q, size_t obstacle,
-                            contact_direction *direction, double *inverse_mass, ric_error *error) {
-  RIC_TRY(reserve(solver, 1, error));
-  RIC_TRY(find_direction(solver, 0, obstacle, t, q, error));
-  *direction = solver->directions[0];
-  *inverse_mass = product(direction, direction);
+ric_status impact_close_in(impact_solver *solver, double t, const double *q, double *u, const size_t *obstacles,
+                           size_t count, ric_error *error) {
+  RIC_TRY(reserve(solver, count, error));
+  for (size_t i = 0; i < count; i++) {
+    RIC_TRY(find_direction(solver, i, obstacles[i], t, q, error));
+    solver->solution[i] = -ric_system_gap(solver->system, obstacles[i], t, q);
+  }
+  fill_matrix(solver, count);
+  cholesky_factor_semidefinite(solver->matrix, count);
+  cholesky_solve(solver->matrix, count, solver->solution);
+  for (size_t i = 0; i < count; i++)
+    push(&solver->directions[i], solver->solution[i], u);
   return RIC_OK;
 }
 
-ric_status contact_forces(impact_solver *solver, double t, const double *q, const size_t *obstacles, const double *b,
+static ric_status force_alone(impact_solver *s, double t, const double *q, size_t obstacle, double *b, double *lambda,
+                              ric_error *error) {
+  double inverse_mass = 1; /* of impact maps: only the sign counts */
+  if (s->system->model->direction) {
+    RIC_TRY(find_direction(s, 0, obstacle, t, q, error));
+    inverse_mass = product(&s->directions[0], &s->directions[0]);
+  }
+  *lambda = fmax(-*b / inverse_mass, 0);
+  *b = fmax(*b, 0);
+  return RIC_OK;
+}
+
+/* A lambda + b in the place of b. */
+static void add_forces(const impact_solver *s, double *b, const double *lambda, size_t count) {
+  for (size_t i = 0; i < count; i++) {
+    double terms = fabs(b[i]);
+    for (size_t j = 0; j < count; j++) {
+      double term = s->matrix[i * count + j] * lambda[j];
+      b[i] += term;
+      terms += fabs(term);
+    }
+    b[i] = b[i] > acceleration_tol * terms ? b[i] : 0;
+  }
+}
+
+ric_status contact_forces(impact_solver *solver, double t, const double *q, const size_t *obstacles, double *b,
                           size_t count, double *lambda, ric_error *error) {
   bool maps = !solver->system->model->direction, alone = maps || solver->system->uncoupled || count == 1;
   if (!maps)
     RIC_TRY(reserve(solver, alone ? 1 : count, error));
-  for (size_t i = 0; i < count; i++) {
-    if (!maps)
-      RIC_TRY(find_direction(solver, alone ? 0 : i, obstacles[i], t, q, error));
-    if (alone)
-      lambda[i] = fmax(-b[i] / (maps ? 1 : product(&solver->directions[0], &solver->directions[0])), 0);
-  }
+  for (size_t i = 0; alone && i < count; i++)
+    RIC_TRY(force_alone(solver, t, q, obstacles[i], &b[i], &lambda[i], error));
   if (alone)
     return RIC_OK;
+  for (size_t i = 0; i < count; i++)
+    RIC_TRY(find_direction(solver, i, obstacles[i], t, q, error));
   fill_matrix(solver, count);
-  return complementarity_solve(&solver->lcp, count, solver->matrix, b, lambda, error);
+  RIC_TRY(complementarity_solve(&solver->lcp, count, solver->matrix, b, lambda, error));
+  add_forces(solver, b, lambda, count);
+  return RIC_OK;
 }

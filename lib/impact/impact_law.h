@@ -16,10 +16,12 @@
 /** One contact at the time of impact. */
 typedef struct impact {
   size_t obstacle;
+  double restitution;
   double rate, rate_end; /* gap rates before and after */
   double impulse;
   double loss;         /* of energy; NaN where unknown */
   bool coupled;        /* with another of the list */
+  bool leaves;         /* set by those who judge the outcome */
   double accumulation; /* time from now at which the series of its impacts ends; NaN: no chatter */
 } impact;
 
@@ -37,7 +39,7 @@ typedef struct impact_solver {
 ric_status impact_solver_init(impact_solver *solver, const ric_system *system, ric_error *error);
 void impact_solver_clear(impact_solver *solver);
 
-/** Applies the law to contacts [count] with their `obstacle` given; sets all else in them.
+/** Applies the law to contacts [count] with their `obstacle` and `restitution` given; sets all else in them.
  *  @param q, u  [n], [m] state; u changes (q for first-order systems) */
 ric_status impact_apply(impact_solver *solver, double t, double *q, double *u, impact *contacts, size_t count,
                         ric_error *error);
@@ -56,18 +58,19 @@ ric_status impact_stick(impact_solver *solver, double t, double *q, double *u, i
 ric_status impact_reflect(impact_solver *solver, double t, const double *q, double *u, const size_t *obstacles,
                           const double *restitution, size_t count, double *loss, ric_error *error);
 
-/** Direction of one contact, in the solver's storage until its next call; not for first-order systems.
- *  @param inverse_mass  g^T M^-1 g */
-ric_status impact_direction(impact_solver *solver, double t, const double *q, size_t obstacle,
-                            contact_direction *direction, double *inverse_mass, ric_error *error);
+/** Adds to u [m] the speeds with which the gaps of contacts [count] would be closed after a unit of time, the least in
+ *  kinetic energy; not for first-order systems. Of contacts that depend on each other the first ones decide. */
+ric_status impact_close_in(impact_solver *solver, double t, const double *q, double *u, const size_t *obstacles,
+                           size_t count, ric_error *error);
 
 /** Solves the contact conditions for accelerations of contacts with gap and gap rate zero,
  *
  *   0 <= lambda  _|_  A lambda + b >= 0,   b = accelerations of the gaps without these forces.
  *
- *  @param obstacles, b  [count]
+ *  @param obstacles  [count]
+ *  @param b  [count] becomes A lambda + b, zero where that is no more than errors of the accelerations
  *  @param lambda  [count], set */
-ric_status contact_forces(impact_solver *solver, double t, const double *q, const size_t *obstacles, const double *b,
+ric_status contact_forces(impact_solver *solver, double t, const double *q, const size_t *obstacles, double *b,
                           size_t count, double *lambda, ric_error *error);
 
 #endif

@@ -2,13 +2,22 @@
 #include "growing.h"
 #include "trajectory_state.h"
 
-static ric_status add_impact(ric_trajectory *tr, size_t obstacle, ric_error *error) {
+static ric_status add_impact(ric_trajectory *tr, size_t obstacle, double restitution, ric_error *error) {
   impact *impacts = growing_room(tr->impacts, tr->impact_count, &tr->impact_capacity, sizeof *impacts);
   if (!impacts)
     return ric_fail(error, RIC_ENOMEM, "no memory for more than %zu impacts at one time", tr->impact_count);
   tr->impacts = impacts;
-  tr->impacts[tr->impact_count++] = (impact){.obstacle = obstacle};
+  tr->impacts[tr->impact_count++] = (impact){.obstacle = obstacle, .restitution = restitution};
   return RIC_OK;
+}
+
+static double restitution_of(const ric_trajectory *tr, size_t obstacle) {
+  return tr->system->model->restitution(tr->system, obstacle);
+}
+
+/* Whether impulses and forces reach from contact to contact. */
+static bool contacts_couple(const ric_trajectory *tr) {
+  return !tr->system->uncoupled && tr->system->model->direction;
 }
 
 static double gap_now(const ric_trajectory *tr, size_t obstacle) {
@@ -73,15 +82,15 @@ static ric_status sum_up(ric_trajectory *tr, size_t hits, ric_error *error) {
   bool all = hits == 1 && !isnan(tr->impacts[0].accumulation); /* with the persistent contacts that share in it */
   for (size_t i = 0; i < tr->impact_count; i++) {
     impact *c = &tr->impacts[i];
-    double e = tr->system->model->restitution(tr->system, all ? tr->impacts[0].obstacle : c->obstacle);
+    double e = all ? tr->impacts[0].restitution : c->restitution;
     if (all || !isnan(c->accumulation))
       RIC_TRY(impact_stick(&tr->law, tr->flow->time, tr->flow->q, tr->flow->u, c, e, error));
   }
   return RIC_OK;
 }
 
-/* Whether a contact comes in no faster than it would fall through the noise of its gap: it has been pressed on already,
- * and an impact would only hand the noise from contact to contact. */
+/* Whether a contact has no more of a rate than from a fall through the noise of its gap: coming in, it has been pressed
+ * on already. */
 static ric_status is_pressed_on(ric_trajectory *tr, size_t obstacle, double rate, bool *pressed, ric_error *error) {
   double acceleration, noise = tr->locator.noise;
   *pressed = false;
@@ -92,22 +101,23 @@ static ric_status is_pressed_on(ric_trajectory *tr, size_t obstacle, double rate
   return RIC_OK;
 }
 
-/* Whether an impact leaves the obstacle. A bounce that stays within the noise of the gap does not: followed, the noise
- * would keep it up. */
-static ric_status leaves(ric_trajectory *tr, const impact *c, bool *so, ric_error *error) {
-  bool low = false;
-  *so = c->rate_end > tr->rate_noise;
-  if (*so && c->rate < -tr->rate_noise && tr->system->model->restitution(tr->system, c->obstacle) < 1)
-    RIC_TRY(is_pressed_on(tr, c->obstacle, c->rate_end, &low, error));
-  *so &= !low;
+/* Which contacts leave their obstacles. Flights that stay within the noise of the gap do not: followed, the noise would
+ * keep them up. */
+static ric_status find_leaving(ric_trajectory *tr, ric_error *error) {
+  for (size_t i = 0; i < tr->impact_count; i++) {
+    impact *c = &tr->impacts[i];
+    bool low = false;
+    c->leaves = c->rate_end > tr->rate_noise;
+    if (c->leaves && c->restitution < 1 && (c->rate < -tr->rate_noise || contacts_couple(tr)))
+      RIC_TRY(is_pressed_on(tr, c->obstacle, c->rate_end, &low, error));
+    c->leaves &= !low;
+  }
   return RIC_OK;
 }
 
 /* An impact's aftermath: leave, settle, or be taken for at rest. */
 static ric_status aftermath(ric_trajectory *tr, const impact *c, ric_error *error) {
-  bool away;
-  RIC_TRY(leaves(tr, c, &away, error));
-  if (away)
+  if (c->leaves)
     return contact_opens(tr, c->obstacle, DEPARTS_FAST, error);
   RIC_TRY(index_list_add(&tr->settling, c->obstacle, error));
   return isnan(c->accumulation) ? RIC_OK : contact_will_rest(tr, c->obstacle, tr->flow->time + c->accumulation, error);
@@ -134,11 +144,29 @@ static void show_impact(ric_trajectory *tr, const impact *c, size_t hits, double
   trajectory_show(tr, &event);
 }
 
-/* A contact of the list: an impact, or a persistent contact that shares in the impulses. */
+/* More than rounding is left of its gap. */
+static bool is_off(const ric_trajectory *tr, size_t obstacle) {
+  return fabs(gap_now(tr, obstacle)) > tr->noise / 100;
+}
+
+/* Puts those that come in onto their obstacles; where contacts couple all of them together: one alone would lift the
+ * others, and what they fall from there would keep them moving. */
+static ric_status put_on(ric_trajectory *tr, ric_error *error) {
+  bool couple = contacts_couple(tr), any = false;
+  tr->closed.count = 0;
+  for (size_t i = 0; i < tr->impact_count; i++)
+    any |= is_off(tr, tr->impacts[i].obstacle);
+  for (size_t i = 0; any && i < tr->impact_count; i++) {
+    const impact *c = &tr->impacts[i];
+    if (couple || (c->rate < -tr->rate_noise && is_off(tr, c->obstacle)))
+      RIC_TRY(index_list_add(&tr->closed, c->obstacle, error));
+  }
+  return contacts_put_on(tr, tr->closed.items, tr->closed.count, error);
+}
+
+/* A contact of the list: an impact, or a closed contact that shares in the impulses. */
 static ric_status conclude_impact(ric_trajectory *tr, impact *c, size_t hits, double depth, ric_error *error) {
-  if (c->rate < -tr->rate_noise && fabs(gap_now(tr, c->obstacle)) > tr->noise / 100) /* more than rounding */
-    RIC_TRY(contact_put_on(tr, c->obstacle, error));
-  if (c->rate < -tr->rate_noise || c->impulse > 0)
+  if (hits > 0 && (c->rate < -tr->rate_noise || c->impulse > 0))
     show_impact(tr, c, hits, depth);
   if (!isnan(c->loss))
     tr->run->impact_loss += c->loss;
@@ -154,6 +182,8 @@ static ric_status collide(ric_trajectory *tr, size_t hits, ric_error *error) {
   RIC_TRY(impact_apply(&tr->law, f->time, f->q, f->u, tr->impacts, tr->impact_count, error));
   RIC_TRY(chatter_ahead(tr, hits, error));
   RIC_TRY(sum_up(tr, hits, error));
+  RIC_TRY(put_on(tr, error));
+  RIC_TRY(find_leaving(tr, error));
   for (size_t i = 0; i < tr->impact_count; i++)
     RIC_TRY(conclude_impact(tr, &tr->impacts[i], hits, i < hits ? depth : -INFINITY, error));
   return RIC_OK;
@@ -166,7 +196,7 @@ static ric_status sort_root(ric_trajectory *tr, size_t obstacle, ric_error *erro
   if (rate < -tr->rate_noise) {
     RIC_TRY(is_pressed_on(tr, obstacle, rate, &pressed, error));
     if (!pressed)
-      return add_impact(tr, obstacle, error);
+      return add_impact(tr, obstacle, restitution_of(tr, obstacle), error);
     carried_lose(tr, obstacle, RIC_SALTATION_GRAZING);
     return index_list_add(&tr->settling, obstacle, error);
   }
@@ -180,28 +210,56 @@ static ric_status sort_root(ric_trajectory *tr, size_t obstacle, ric_error *erro
                                : index_list_add(&tr->settling, obstacle, error);
 }
 
-/* Contacts that persist, or are closed without a rate, have their part in what happens at an impact: impulses where
- * they couple, forces anyway. */
-static ric_status add_held(ric_trajectory *tr, ric_error *error) {
-  bool share = !tr->system->uncoupled && tr->system->model->direction;
-  for (size_t i = 0; share && i < tr->settling.count; i++)
-    RIC_TRY(add_impact(tr, tr->settling.items[i], error));
-  tr->settling.count = share ? 0 : tr->settling.count;
-  for (size_t i = 0; i < tr->held.count; i++) {
-    size_t obstacle = tr->held.items[i];
-    if (contact_persists(tr, obstacle))
-      RIC_TRY(share ? add_impact(tr, obstacle, error) : index_list_add(&tr->settling, obstacle, error));
+static bool takes_part(const ric_trajectory *tr, size_t obstacle) {
+  bool listed = false;
+  for (size_t i = 0; i < tr->impact_count; i++)
+    listed |= tr->impacts[i].obstacle == obstacle;
+  return listed;
+}
+
+/* Contacts that have departed from zero without a rate and have not left it. */
+static ric_status add_touching(ric_trajectory *tr, ric_error *error) {
+  for (size_t i = 0; i < tr->departing.count; i++) {
+    size_t obstacle = tr->departing.items[i];
+    double rate = rate_now(tr, obstacle);
+    bool open = tr->locator.departure[obstacle] != DEPARTED && !is_compliant(tr, obstacle);
+    bool pressed = fabs(rate) <= tr->rate_noise;
+    if (open && rate < -tr->rate_noise)
+      RIC_TRY(is_pressed_on(tr, obstacle, rate, &pressed, error));
+    if (open && pressed && !takes_part(tr, obstacle))
+      RIC_TRY(add_impact(tr, obstacle, 0, error));
   }
+  return RIC_OK;
+}
+
+/* Where contacts couple, all that are closed have their part in what happens, with no rate to give back. */
+static ric_status add_closed(ric_trajectory *tr, ric_error *error) {
+  for (size_t i = 0; i < tr->settling.count; i++)
+    RIC_TRY(add_impact(tr, tr->settling.items[i], 0, error));
+  tr->settling.count = 0;
+  for (size_t i = 0; i < tr->held.count; i++)
+    if (contact_persists(tr, tr->held.items[i]))
+      RIC_TRY(add_impact(tr, tr->held.items[i], 0, error));
+  return add_touching(tr, error);
+}
+
+/* Where they do not, impacts change the forces of those that persist. */
+static ric_status add_held(ric_trajectory *tr, ric_error *error) {
+  for (size_t i = 0; i < tr->held.count; i++)
+    if (contact_persists(tr, tr->held.items[i]))
+      RIC_TRY(index_list_add(&tr->settling, tr->held.items[i], error));
   return RIC_OK;
 }
 
 /* Impacts are gathered in tr->impacts; rests and touches in tr->settling. */
 static ric_status resolve(ric_trajectory *tr, ric_error *error) {
   size_t hits = tr->impact_count;
-  if (hits > 0) {
+  if (contacts_couple(tr) && hits + tr->settling.count > 0)
+    RIC_TRY(add_closed(tr, error));
+  else if (hits > 0)
     RIC_TRY(add_held(tr, error));
+  if (tr->impact_count > 0)
     RIC_TRY(collide(tr, hits, error));
-  }
   contacts_forget_released(tr);
   RIC_TRY(contacts_settle(tr, error));
   RIC_TRY(carried_meet(tr, hits, error));
@@ -234,7 +292,7 @@ static ric_status begin_one(ric_trajectory *tr, size_t obstacle, ric_error *erro
   if (gap > noise)
     return RIC_OK;
   if (rate < -tr->rate_noise)
-    return add_impact(tr, obstacle, error);
+    return add_impact(tr, obstacle, restitution_of(tr, obstacle), error);
   return rate > tr->rate_noise ? contact_opens(tr, obstacle, DEPARTS_FAST, error)
                                : index_list_add(&tr->settling, obstacle, error);
 }

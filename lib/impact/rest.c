@@ -38,8 +38,13 @@ static ric_status read_acceleration(ric_trajectory *tr, double t, const double *
 }
 
 ric_status gap_acceleration(ric_trajectory *tr, size_t obstacle, double *acceleration, ric_error *error) {
-  const ric_flow *f = tr->flow;
-  RIC_TRY(find_rates(tr, f->time, f->q, f->u, error));
+  ric_flow *f = tr->flow;
+  contact_state now = flow_contact(f, obstacle);
+  if (now == CONTACT_HELD)
+    flow_set_contact(f, obstacle, CONTACT_OPEN);
+  ric_status status = find_rates(tr, f->time, f->q, f->u, error);
+  flow_set_contact(f, obstacle, now);
+  RIC_TRY(status);
   return read_acceleration(tr, f->time, f->q, f->u, obstacle, acceleration, error);
 }
 
@@ -75,12 +80,12 @@ static ric_status add_jerks(ric_trajectory *tr, double dt, double scale, ric_err
 static bool may_chatter(const ric_trajectory *tr, const impact *c, size_t hits) {
   bool alone = hits == 1 || (!c->coupled && tr->system->model->direction);
   return alone && c->rate < -tr->rate_noise && c->rate_end > tr->rate_noise && tr->options.chatter_tol > 0 &&
-         tr->system->model->restitution(tr->system, c->obstacle) < 1;
+         c->restitution < 1;
 }
 
 /* Time that a series lasts under the present acceleration. */
-static double first_duration(const ric_trajectory *tr, const impact *c, double acceleration) {
-  double e = tr->system->model->restitution(tr->system, c->obstacle);
+static double first_duration(const impact *c, double acceleration) {
+  double e = c->restitution;
   return acceleration < 0 ? 2 * c->rate_end / (-acceleration * (1 - e)) : INFINITY;
 }
 
@@ -95,7 +100,7 @@ static double chatter_limit(const ric_trajectory *tr) {
 /* Whether a bounce loses no more of its height than the flow's errors can give back: followed, they would keep the
  * series up. */
 static bool is_kept_up(const ric_trajectory *tr, const impact *c, double acceleration) {
-  double e = tr->system->model->restitution(tr->system, c->obstacle), size = tr->locator.noise / tr->noise;
+  double e = c->restitution, size = tr->locator.noise / tr->noise;
   double error = 10 * tr->flow->options.tolerance * size;
   return acceleration < 0 && (1 - e * e) * c->rate_end * c->rate_end <= -2 * acceleration * error;
 }
@@ -103,7 +108,7 @@ static bool is_kept_up(const ric_trajectory *tr, const impact *c, double acceler
 /* Flights of a gap with acceleration -A + J t that begin at the rate w and shrink by e last, in all and to the order
  * after the first, 2 w / (A (1 - e)) (1 + (2/3) (J / A^2) w / (1 - e)). */
 static double judge_series(const ric_trajectory *tr, const impact *c, double acceleration, double jerk) {
-  double e = tr->system->model->restitution(tr->system, c->obstacle), duration = first_duration(tr, c, acceleration);
+  double e = c->restitution, duration = first_duration(c, acceleration);
   double limit = is_kept_up(tr, c, acceleration) ? 1 : chatter_limit(tr);
   if (!(duration * fmax(1, fabs(jerk / acceleration)) <= limit))
     return NAN;
@@ -119,23 +124,31 @@ static ric_status find_candidates(ric_trajectory *tr, size_t hits, bool *any, ri
     impact *c = &tr->impacts[i];
     double acceleration;
     c->accumulation = NAN;
-    if (!may_chatter(tr, c, hits))
+    if (i >= hits || !may_chatter(tr, c, hits))
       continue;
     if (!asked)
       RIC_TRY(find_rates(tr, f->time, f->q, f->u, error));
     asked = true;
     RIC_TRY(read_acceleration(tr, f->time, f->q, f->u, c->obstacle, &acceleration, error));
-    if (first_duration(tr, c, acceleration) <= chatter_limit(tr) || is_kept_up(tr, c, acceleration))
+    if (first_duration(c, acceleration) <= chatter_limit(tr) || is_kept_up(tr, c, acceleration))
       c->accumulation = 0;
     *any |= !isnan(c->accumulation);
   }
   return RIC_OK;
 }
 
+/* Held contacts that the impulse has lifted bear no force in the time ahead. */
+static void open_lifted(ric_trajectory *tr, size_t hits) {
+  for (size_t i = hits; i < tr->impact_count; i++)
+    if (tr->impacts[i].rate_end > tr->rate_noise)
+      flow_set_contact(tr->flow, tr->impacts[i].obstacle, CONTACT_OPEN);
+}
+
 ric_status chatter_ahead(ric_trajectory *tr, size_t hits, ric_error *error) {
   const ric_flow *f = tr->flow;
   double dt = 1e-5;
   bool any;
+  open_lifted(tr, hits);
   RIC_TRY(find_candidates(tr, hits, &any, error));
   if (!any)
     return RIC_OK;
@@ -165,65 +178,52 @@ static ric_status make_room(ric_trajectory *tr, ric_error *error) {
   return tr->settling_capacity ? RIC_OK : ric_fail(error, RIC_ENOMEM, "no memory for %zu persistent contacts", count);
 }
 
-/* How the coordinates move at unit impulse: q' is linear in the speeds. In tr->rates. */
-static ric_status find_shift(ric_trajectory *tr, const contact_direction *d, ric_error *error) {
-  const ric_flow *f = tr->flow;
+/* Moves the coordinates by their rates at speeds that close the gaps in a unit of time: q' is linear in the speeds. */
+static ric_status close_gaps(ric_trajectory *tr, const size_t *obstacles, size_t count, ric_error *error) {
+  ric_flow *f = tr->flow;
   size_t n = tr->system->coordinates, m = tr->system->speeds;
   double *u = tr->shifted + n;
   RIC_TRY(find_rates(tr, f->time, f->q, f->u, error));
   memcpy(tr->shifted, tr->rates, n * sizeof *tr->rates);
   memcpy(u, f->u, m * sizeof *u);
-  for (size_t i = 0; i < d->count; i++)
-    u[d->first + i] += d->w[i];
+  RIC_TRY(impact_close_in(&tr->law, f->time, f->q, u, obstacles, count, error));
   RIC_TRY(find_rates(tr, f->time, f->q, u, error));
   for (size_t i = 0; i < n; i++)
-    tr->rates[i] -= tr->shifted[i];
+    f->q[i] += tr->rates[i] - tr->shifted[i];
   return RIC_OK;
 }
 
-ric_status contact_put_on(ric_trajectory *tr, size_t obstacle, ric_error *error) {
+ric_status contacts_put_on(ric_trajectory *tr, const size_t *obstacles, size_t count, ric_error *error) {
   const ric_obstacle *o = tr->system->obstacles;
-  contact_direction d;
-  double inverse_mass;
-  if (o) {
-    tr->flow->q[o[obstacle].coordinate] = o[obstacle].position;
-    return RIC_OK;
-  }
-  if (!tr->system->model->direction)
-    return RIC_OK;
-  double gap = ric_system_gap(tr->system, obstacle, tr->flow->time, tr->flow->q);
-  RIC_TRY(impact_direction(&tr->law, tr->flow->time, tr->flow->q, obstacle, &d, &inverse_mass, error));
-  RIC_TRY(find_shift(tr, &d, error));
-  for (size_t i = 0; i < tr->system->coordinates; i++)
-    tr->flow->q[i] -= gap / inverse_mass * tr->rates[i];
-  return RIC_OK;
+  for (size_t i = 0; o && i < count; i++)
+    tr->flow->q[o[obstacles[i]].coordinate] = o[obstacles[i]].position;
+  return o || !tr->system->model->direction || count == 0 ? RIC_OK : close_gaps(tr, obstacles, count, error);
 }
 
-/* Gap rates of all held contacts are zero: to rounding, and at coordinates exactly. */
-static ric_status halt(ric_trajectory *tr, ric_error *error) {
+/* Gap rates of contacts become zero: to rounding, and at coordinates exactly. */
+static ric_status halt(ric_trajectory *tr, const index_list *list, ric_error *error) {
   const ric_system *s = tr->system;
   ric_flow *f = tr->flow;
   double loss;
-  if (tr->held.count == 0 || !s->model->direction)
+  if (list->count == 0 || !s->model->direction)
     return RIC_OK;
-  RIC_TRY(impact_reflect(&tr->law, f->time, f->q, f->u, tr->held.items, NULL, tr->held.count, &loss, error));
+  RIC_TRY(impact_reflect(&tr->law, f->time, f->q, f->u, list->items, NULL, list->count, &loss, error));
   tr->run->impact_loss += loss;
-  for (size_t i = 0; s->obstacles && i < tr->held.count; i++)
-    f->u[s->obstacles[tr->held.items[i]].coordinate] = 0;
+  for (size_t i = 0; s->obstacles && i < list->count; i++)
+    f->u[s->obstacles[list->items[i]].coordinate] = 0;
   return RIC_OK;
 }
 
 ric_status contacts_keep_on(ric_trajectory *tr, bool *moved, ric_error *error) {
   *moved = false;
   for (size_t i = 0; i < tr->held.count && !tr->system->obstacles && tr->system->model->direction; i++) {
-    size_t obstacle = tr->held.items[i];
-    double gap = ric_system_gap(tr->system, obstacle, tr->flow->time, tr->flow->q);
-    if (fabs(gap) <= tr->locator.noise || !contact_persists(tr, obstacle))
-      continue;
-    RIC_TRY(contact_put_on(tr, obstacle, error));
-    *moved = true;
+    double gap = ric_system_gap(tr->system, tr->held.items[i], tr->flow->time, tr->flow->q);
+    *moved |= fabs(gap) > tr->locator.noise;
   }
-  return *moved ? halt(tr, error) : RIC_OK;
+  if (!*moved)
+    return RIC_OK;
+  RIC_TRY(contacts_put_on(tr, tr->held.items, tr->held.count, error));
+  return halt(tr, &tr->held, error);
 }
 
 /* Whether contacts that persist leave the motion a direction. A user's contact that comes when they do not is held by
@@ -238,31 +238,47 @@ static bool is_free(const ric_trajectory *tr) {
   return held < (s->speeds ? s->speeds : s->coordinates);
 }
 
-/* The gap of a contact that rests is zero; see halt for its rate. */
 static ric_status conclude(ric_trajectory *tr, size_t obstacle, bool persists, ric_error *error) {
-  if (!persists || !(contact_persists(tr, obstacle) || is_free(tr)))
-    return contact_opens(tr, obstacle, DEPARTS_SLOWLY, error);
-  RIC_TRY(contact_put_on(tr, obstacle, error));
-  return contact_rests(tr, obstacle, error);
+  if (persists && (contact_persists(tr, obstacle) || is_free(tr)))
+    return contact_rests(tr, obstacle, error);
+  return contact_opens(tr, obstacle, DEPARTS_SLOWLY, error);
 }
 
-ric_status contacts_settle(ric_trajectory *tr, ric_error *error) {
+/* Accelerations of the settling contacts with all of them open, then with their forces. */
+static ric_status find_forces(ric_trajectory *tr, ric_error *error) {
   ric_flow *f = tr->flow;
-  index_list *list = &tr->settling;
-  if (list->count == 0)
-    return RIC_OK;
+  const index_list *list = &tr->settling;
   RIC_TRY(make_room(tr, error));
   for (size_t i = 0; i < list->count; i++)
     flow_set_contact(f, list->items[i], CONTACT_OPEN);
   RIC_TRY(find_rates(tr, f->time, f->q, f->u, error));
   for (size_t i = 0; i < list->count; i++)
     RIC_TRY(read_acceleration(tr, f->time, f->q, f->u, list->items[i], &tr->accelerations[i], error));
-  RIC_TRY(contact_forces(&tr->law, f->time, f->q, list->items, tr->accelerations, list->count, tr->forces, error));
+  return contact_forces(&tr->law, f->time, f->q, list->items, tr->accelerations, list->count, tr->forces, error);
+}
+
+/* Contacts that press have gap and gap rate zero, and so have those that touch and neither press nor leave: what errors
+ * have left of theirs would set the body rocking between its redundant contacts. */
+static ric_status come_to_rest(ric_trajectory *tr, ric_error *error) {
+  tr->closed.count = 0;
+  for (size_t i = 0; i < tr->settling.count; i++)
+    if (!(tr->accelerations[i] > 0))
+      RIC_TRY(index_list_add(&tr->closed, tr->settling.items[i], error));
+  RIC_TRY(contacts_put_on(tr, tr->closed.items, tr->closed.count, error));
+  return halt(tr, &tr->closed, error);
+}
+
+ric_status contacts_settle(ric_trajectory *tr, ric_error *error) {
+  index_list *list = &tr->settling;
+  if (list->count == 0)
+    return RIC_OK;
+  RIC_TRY(find_forces(tr, error));
+  RIC_TRY(come_to_rest(tr, error));
   for (size_t i = 0; i < list->count; i++) {
-    bool neutral = list->count == 1 && tr->accelerations[i] <= 0;
+    bool neutral = list->count == 1 && !(tr->accelerations[i] > 0);
     RIC_TRY(conclude(tr, list->items[i], tr->forces[i] > 0 || neutral, error));
   }
   list->count = 0;
   contacts_forget_released(tr);
-  return halt(tr, error);
+  return RIC_OK;
 }

@@ -88,6 +88,7 @@ void ric_trajectory_destroy(ric_trajectory **trajectory) {
   free(tr->held.items);
   free(tr->departing.items);
   free(tr->settling.items);
+  free(tr->closed.items);
   free(tr->accelerations);
   free(tr->forces);
   free(tr->coming);

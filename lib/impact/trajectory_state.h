@@ -53,6 +53,7 @@ struct ric_trajectory {
   size_t impact_count, impact_capacity;
   unsigned char *resting;               /* [obstacles] */
   index_list held, departing, settling; /* contacts that persist; have just left; are to be decided */
+  index_list closed;                    /* work: contacts that act together */
   double *accelerations, *forces;       /* of settling contacts, grown with them */
   size_t settling_capacity;
   coming_rest *coming; /* in no order */
@@ -80,12 +81,13 @@ ric_status contacts_begin(ric_trajectory *tr, ric_error *error);
 /** The flow stands at the first roots of a step: applies what happens there and restarts the flow. */
 ric_status contacts_meet(ric_trajectory *tr, ric_error *error);
 
-/** Decides which of tr->settling persist and which open, and empties it. */
+/** Decides which of tr->settling persist and which open, and empties it. In systems whose contacts couple the list
+ *  holds all that are closed, those that persist with them. */
 ric_status contacts_settle(ric_trajectory *tr, ric_error *error);
 
-/** Puts a contact onto its obstacle: takes away what errors of the flow have left of its gap, along the direction in
- *  which an impulse moves it. First-order systems have none and stay. */
-ric_status contact_put_on(ric_trajectory *tr, size_t obstacle, ric_error *error);
+/** Puts contacts onto their obstacles, all together: takes away what errors of the flow have left of their gaps, by the
+ *  least motion along the directions in which impulses move them. First-order systems have none and stay. */
+ric_status contacts_put_on(ric_trajectory *tr, const size_t *obstacles, size_t count, ric_error *error);
 
 /** Puts held contacts of user systems back where they have drifted off. @param moved  whether any was */
 ric_status contacts_keep_on(ric_trajectory *tr, bool *moved, ric_error *error);

@@ -209,6 +209,50 @@ static void starts_a_little_below_the_floor_go_on(void **state) {
   }
 }
 
+/* Mass 0 lies on mass 1 and both are pushed along, M = [[1, 0.3], [0.3, 3]]: as they go away, errors of the state grow
+ * with it. */
+static int pair_mass(double t, const double *q, double *M, void *user) {
+  (void)t, (void)q, (void)user;
+  memcpy(M, (double[]){1, 0.3, 0.3, 3}, 4 * sizeof *M);
+  return 0;
+}
+
+static int pair_push(double t, const double *q, const double *u, double *f, void *user) {
+  (void)t, (void)q, (void)u, (void)user;
+  f[0] = 0.2;
+  f[1] = 1.7;
+  return 0;
+}
+
+static int pair_gap(double t, const double *q, size_t obstacle, double *h, void *user) {
+  (void)t, (void)obstacle, (void)user;
+  *h = q[0] - q[1];
+  return 0;
+}
+
+/* Both have the acceleration 1.9 / 4.6. To put the contact on at every step would take thousands of restarts. */
+static void noise_of_gaps_grows_with_the_state(void **state) {
+  (void)state;
+  double restitution = 0.5, end = 1000;
+  ric_mechanical model = {.coordinates = 2,
+                          .speeds = 2,
+                          .obstacles = 1,
+                          .restitution = &restitution,
+                          .mass = pair_mass,
+                          .force = pair_push,
+                          .gap = pair_gap};
+  ric_system *system = NULL;
+  assert_int_equal(ric_system_create_mechanical(&model, &system, NULL), RIC_OK);
+  recorded r = record(system, NULL, (double[]){0, 0}, (double[]){0.3, 0.3}, end);
+  assert_int_equal(r.run.outcome, RIC_RUN_COMPLETED);
+  assert_int_equal(r.count, 1);
+  assert_int_equal(r.events[0].kind, RIC_EVENT_REST);
+  assert_true(r.run.flow.starts < 100);
+  assert_close(r.q[0], 0.3 * end + 0.95 / 4.6 * end * end, 1e-8 * end * end);
+  recorded_clear(&r);
+  ric_system_destroy(&system);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(release_time_under_harmonic_force_is_the_closed_form),
@@ -220,6 +264,7 @@ int main(void) {
       cmocka_unit_test(elastic_floor_holds_a_mass_put_down_on_it),
       cmocka_unit_test(balls_come_to_rest_at_any_height),
       cmocka_unit_test(starts_a_little_below_the_floor_go_on),
+      cmocka_unit_test(noise_of_gaps_grows_with_the_state),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
