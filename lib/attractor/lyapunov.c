@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdint.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -118,17 +119,18 @@ static ric_status advance(course *c, double end, double *exponents, bool *over, 
   take_stock(c, time_now(c) - start, exponents);
   if (c->result->time > 0 && o->history && o->history(c->result->time, exponents, c->count, o->user) != 0) {
     c->result->run.outcome = RIC_RUN_ENDED;
+    snprintf(c->result->run.reason, sizeof c->result->run.reason, "the history asked for the end");
     *over = true;
   }
   return RIC_OK;
 }
 
 static ric_status run(course *c, double end, double *exponents, ric_error *error) {
-  bool over = false;
   ric_run *whole = &c->result->run;
   RIC_TRY(set_up(c, error));
-  RIC_TRY(
-      ric_trajectory_run(c->trajectory, time_now(c), NULL, whole, error)); /* contacts that are closed at the start */
+  /* Contacts that are closed at the start come before the tangent vectors. */
+  RIC_TRY(ric_trajectory_run(c->trajectory, time_now(c), c->options->observer, whole, error));
+  bool over = whole->outcome != RIC_RUN_COMPLETED;
   while (!over)
     RIC_TRY(advance(c, end, exponents, &over, error));
   return RIC_OK;

@@ -121,7 +121,11 @@ ric_status ric_flow_carry(ric_flow *flow, size_t columns, const double *dq, cons
     memcpy(flow->tangent.q, dq, n * columns * sizeof *dq);
   if (columns > 0 && m > 0)
     memcpy(flow->tangent.u, du, m * columns * sizeof *du);
-  RIC_TRY(flow->method->carry(flow, error));
+  ric_status status = flow->method->carry(flow, error);
+  if (status != RIC_OK) {
+    flow->tangent.columns = 0; /* none are carried */
+    return status;
+  }
   return flow_restart(flow, error);
 }
 

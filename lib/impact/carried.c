@@ -41,7 +41,12 @@ ric_status ric_trajectory_carry(ric_trajectory *tr, size_t columns, const double
     return ric_fail(error, RIC_EINVAL, "the trajectory has no start");
   RIC_TRY(ric_flow_carry(tr->flow, columns, dq, du, error));
   tr->carried.kind = RIC_SALTATION_DIFFERENTIABLE;
-  return columns > 0 ? make_room(tr, columns, error) : RIC_OK;
+  ric_status status = columns > 0 ? make_room(tr, columns, error) : RIC_OK;
+  if (status != RIC_OK)
+    (void)ric_flow_carry(tr->flow, 0, NULL, NULL, NULL);
+  for (size_t i = 0; status == RIC_OK && tr->system->obstacles && i < tr->held.count; i++)
+    carried_hold(tr, tr->held.items[i]);
+  return status;
 }
 
 size_t ric_trajectory_columns(const ric_trajectory *trajectory) {

@@ -9,10 +9,11 @@
 ric_status tangent_jump_init(tangent_jump *j, const ric_system *system, impact_solver *law, size_t columns,
                              ric_error *error) {
   size_t size = system->coordinates + system->speeds;
-  *j = (tangent_jump){.system = system, .law = law, .columns = columns};
+  *j = (tangent_jump){0};
   double *store = malloc((8 * size + columns) * sizeof *store);
   if (!store)
     return ric_fail(error, RIC_ENOMEM, "no memory for impacts of %zu tangent vectors", columns);
+  *j = (tangent_jump){.system = system, .law = law, .columns = columns};
   j->rates_before = store;
   j->rates_after = store + size;
   j->line = store + 2 * size;
@@ -87,6 +88,24 @@ static double largest(const double *x, size_t count) {
   return most;
 }
 
+/* The map of a first-order system means something where the gap closes: there the step stays. */
+static const char *keep_closing(const passage *p, double *step) {
+  const tangent_jump *j = p->jump;
+  const ric_system *s = j->system;
+  size_t obstacle = p->group->obstacles[0];
+  double here, there, rise = 0;
+  const char *trouble = s->model->gap_rate(s, obstacle, p->t, j->state, NULL, &here);
+  for (int sign = -1; sign <= 1 && !trouble; sign += 2) {
+    for (size_t i = 0; i < s->coordinates; i++)
+      j->point[i] = j->state[i] + sign * *step * j->line[i];
+    trouble = s->model->gap_rate(s, obstacle, p->t + sign * *step * j->in_time, j->point, NULL, &there);
+    rise = fmax(rise, trouble ? 0 : there - here);
+  }
+  if (rise > -here / 2)
+    *step *= -here / 2 / rise;
+  return trouble;
+}
+
 /* DG along j->line, in place. */
 static const char *differentiate(passage *p) {
   tangent_jump *j = p->jump;
@@ -95,7 +114,9 @@ static const char *differentiate(passage *p) {
     return map(p, p->t, j->line, j->line + n);
   double reach = fmax(largest(j->line, size), fabs(j->in_time));
   double step = system_tangent_step(largest(j->state, size), reach);
-  const char *trouble = path_derivative(map_on_line, p, step, size, j->derivative, j->work);
+  const char *trouble = j->system->model->direction ? NULL : keep_closing(p, &step);
+  if (!trouble)
+    trouble = path_derivative(map_on_line, p, step, size, j->derivative, j->work);
   if (!trouble)
     memcpy(j->line, j->derivative, size * sizeof *j->line);
   return trouble;

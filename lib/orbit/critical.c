@@ -91,7 +91,9 @@ static ric_status take_census(family *f, double parameter, census *c) {
   if (ric_poll_stops(f->solver->options.poll))
     return ric_fail(f->error, RIC_ESTOPPED, "stopped at parameter %g", parameter);
   RIC_TRY(ric_orbit_solve(f->solver, &f->chain, f->pattern, period, &f->orbit, f->error));
-  c->known = f->orbit.outcome == RIC_ADMISSIBLE || f->orbit.outcome == RIC_INADMISSIBLE;
+  /* Where a pair breaks a symmetry of the orbit at +1 the contact equations are singular, and solvable: resonant. */
+  c->known =
+      f->orbit.outcome == RIC_ADMISSIBLE || f->orbit.outcome == RIC_INADMISSIBLE || f->orbit.outcome == RIC_RESONANT;
   if (!c->known)
     return RIC_OK;
   RIC_TRY(kicks_of_orbit(&f->solver->kicks, &f->chain, f->pattern, &f->orbit, f->solver->options.grazing_tol, &grazing,
@@ -151,13 +153,16 @@ static ric_status report(family *f, const census *a, const census *b) {
   return RIC_OK;
 }
 
-/* A certain census between two others; where there is none, `middle` is uncertain. */
+/* A certain census between two others; where there is none, `middle` is uncertain, and unknown where there is no orbit.
+ * At the edge of a singular window rounding decides whether there is one. */
 static ric_status between(family *f, const census *a, const census *b, census *middle) {
-  static const double places[] = {0.5, 0.34, 0.66};
-  for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
-    RIC_TRY(take_census(f, a->parameter + places[i] * (b->parameter - a->parameter), middle));
-    if (!middle->known || middle->certain)
-      break;
+  static const double places[] = {0.5, 0.34, 0.66, 0.1, 0.9, 0.02, 0.98};
+  census here;
+  *middle = (census){0};
+  for (size_t i = 0; i < sizeof places / sizeof *places && !middle->certain; i++) {
+    RIC_TRY(take_census(f, a->parameter + places[i] * (b->parameter - a->parameter), &here));
+    if (here.known)
+      *middle = here;
   }
   return RIC_OK;
 }

@@ -1,6 +1,7 @@
 #include "multiplier_verdict.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -40,9 +41,14 @@ typedef struct finding {
   const ric_complex *at_one;    /* one that lies too close to 1; NULL if none does */
 } finding;
 
-static void count_outside(ric_multipliers *m, const ric_complex *z) {
+/* Real multipliers that coincide, as symmetry makes them, get imaginary parts from rounding. */
+static bool is_real(const ric_complex *z, const ric_multiplier_options *o) {
+  return fabs(z->im) <= o->multiplier_tol * fabs(z->re);
+}
+
+static void count_outside(ric_multipliers *m, const ric_complex *z, const ric_multiplier_options *o) {
   m->outside++;
-  if (z->im != 0)
+  if (!is_real(z, o))
     m->complex_outside++;
   else if (z->re > 0)
     m->real_above++;
@@ -59,7 +65,7 @@ static finding look_at(ric_multipliers *m, const ric_complex *mu, size_t count, 
     if (distance_from_one(mu[i]) < o->band_at_one) {
       f.at_one = &mu[i];
     } else if (modulus(mu[i]) > 1 + o->band) {
-      count_outside(m, &mu[i]);
+      count_outside(m, &mu[i], o);
       if (!f.unstable || modulus(mu[i]) > modulus(*f.unstable))
         f.unstable = &mu[i];
     }
@@ -68,9 +74,9 @@ static finding look_at(ric_multipliers *m, const ric_complex *mu, size_t count, 
   return f;
 }
 
-static void say_unstable(ric_multipliers *m, const ric_complex *z) {
+static void say_unstable(ric_multipliers *m, const ric_complex *z, bool real) {
   m->stable = RIC_UNSTABLE;
-  if (z->im == 0)
+  if (real)
     snprintf(m->reason, sizeof m->reason, "multiplier %.9g lies %.3g outside the unit circle, %zu in all outside",
              z->re, modulus(*z) - 1, m->outside);
   else
@@ -83,7 +89,7 @@ static void decide(ric_multipliers *m, const finding *f, const ric_multiplier_op
   m->reason[0] = '\0';
   m->stable = RIC_STABLE;
   if (f->unstable) {
-    say_unstable(m, f->unstable);
+    say_unstable(m, f->unstable, is_real(f->unstable, o));
     return;
   }
   if (f->at_one) {
@@ -97,6 +103,19 @@ static void decide(ric_multipliers *m, const finding *f, const ric_multiplier_op
   }
 }
 
+/* Farther from 1 than rounding splits a double 1, trivial multipliers are none. */
+static const double trivial_tol = 1e-3;
+
+static void look_at_trivial(ric_multipliers *m, size_t trivial) {
+  const ric_complex *z = trivial > 0 ? &m->mu[trivial - 1] : NULL;
+  if (!z || m->stable != RIC_STABLE || distance_from_one(*z) <= trivial_tol)
+    return;
+  m->stable = RIC_UNDECIDED;
+  snprintf(m->reason, sizeof m->reason,
+           "multiplier %.9g %+.3gi, taken for one that is 1 for any motion, lies %.3g from 1", z->re, z->im,
+           distance_from_one(*z));
+}
+
 void multipliers_judge(ric_multipliers *m, size_t trivial, const ric_multiplier_options *options) {
   ric_multiplier_options own = *options, *o = &own;
   if (trivial < 2) /* no second pair can meet the double 1 */
@@ -104,6 +123,7 @@ void multipliers_judge(ric_multipliers *m, size_t trivial, const ric_multiplier_
   qsort(m->mu, m->count, sizeof *m->mu, by_distance_from_one);
   finding f = look_at(m, m->mu + trivial, m->count - trivial, o);
   decide(m, &f, o);
+  look_at_trivial(m, trivial);
   if (!f.outermost)
     m->margin = 0; /* nothing besides those at 1 */
   multipliers_sort(m);

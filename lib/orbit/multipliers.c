@@ -54,7 +54,8 @@ ric_multiplier_options ric_multiplier_options_default(void) {
 static ric_status check_matrix(const double *M, size_t dimension, size_t trivial, const ric_multipliers *m,
                                ric_error *error) {
   if (trivial > 2 || trivial > dimension)
-    return ric_fail(error, RIC_EINVAL, "trivial = %zu, expected 0, 1 or 2", trivial);
+    return ric_fail(error, RIC_EINVAL, "trivial = %zu, expected 0, 1 or 2, and at most the dimension %zu", trivial,
+                    dimension);
   if (m->dimension != dimension)
     return ric_fail(error, RIC_EINVAL, "room for %zu multipliers, expected %zu", m->dimension, dimension);
   for (size_t i = 0; i < dimension * dimension; i++)
