@@ -13,6 +13,7 @@ PUBLIC = {  # public headers by room
     "flow": {"polynomial", "segment", "flow"},
     "impact": {"event", "trajectory", "saltation"},
     "orbit": {"pattern", "orbit", "verify", "monodromy", "multipliers", "orbit_multipliers"},
+    "branch": {"continuation"},
     "attractor": {"lyapunov"},
 }
 BASE = {"status", "export", "version"}

@@ -247,6 +247,44 @@ static void following_a_motion_again_allocates_nothing(void **state) {
   ric_system_destroy(&system);
 }
 
+/* A curve with folds, branch points and test functions, from create on. */
+static ric_status kinked(const double *u, double p, double *F, double *J, double *F_p, void *user, ric_error *error) {
+  double a = u[0] - u[1], b = u[0] + p * u[1];
+  (void)user, (void)error;
+  F[0] = a * b;
+  F[1] = u[1] * u[1] + p * p - 1;
+  J[0] = a + b;
+  J[1] = -b + p * a;
+  J[2] = 0;
+  J[3] = 2 * u[1];
+  F_p[0] = a * u[1];
+  F_p[1] = 2 * p;
+  return RIC_OK;
+}
+
+static ric_status where_p_is_small(const double *u, double p, const double *t_u, double t_p, double *values, void *user,
+                                   ric_error *error) {
+  (void)u, (void)t_u, (void)t_p, (void)user, (void)error;
+  *values = p - 0.1;
+  return RIC_OK;
+}
+
+static void following_a_curve_allocates_nothing(void **state) {
+  (void)state;
+  const ric_curve_problem problem = {.unknowns = 2, .residual = kinked, .tests = 1, .test = where_p_is_small};
+  ric_curve *curve = NULL;
+  ric_curve_run run;
+  double u[2] = {1, 1};
+  assert_int_equal(ric_curve_create(&problem, NULL, &curve, NULL), RIC_OK);
+  size_t before = allocations;
+  assert_int_equal(ric_curve_follow(curve, u, 0, NULL, NULL, NULL, &run, NULL), RIC_OK);
+  assert_int_equal(ric_curve_solve(curve, u, 0.1, NULL, NULL), RIC_OK);
+  assert_int_equal(allocations - before, 0);
+  print_message("%zu points, %zu special, %s\n", run.points, run.special, ric_curve_end_name(run.end));
+  assert_true(run.special >= 4);
+  ric_curve_destroy(&curve);
+}
+
 /* The estimate leaves out the block of the flow, the descriptions of the plans, and buffers that FFTW takes for awkward
  * numbers of particles, up to two numbers per site. It serves to refuse what cannot fit. */
 static void check_estimate(scenario s, ric_orbit_method method) {
@@ -282,6 +320,7 @@ int main(void) {
       cmocka_unit_test(multipliers_again_allocate_nothing),
       cmocka_unit_test(moving_a_user_system_allocates_nothing),
       cmocka_unit_test(following_a_motion_again_allocates_nothing),
+      cmocka_unit_test(following_a_curve_allocates_nothing),
       cmocka_unit_test(memory_is_what_was_estimated),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -7,6 +7,7 @@
 #define RICOCHET_H
 
 #include "chain.h"
+#include "continuation.h"
 #include "event.h"
 #include "flow.h"
 #include "lattice.h"

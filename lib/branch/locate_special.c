@@ -1,0 +1,224 @@
+#include "locate_special.h"
+
+#include <math.h>
+
+#include <gsl/gsl_errno.h>
+
+#include "corrector.h"
+#include "cubic.h"
+
+/* The bracket is halved by corrected points to this part of the step. From there the cubic through its ends stands for
+ * the curve: a step turns by less than 1, so it is good to about (1/256)^4 / 384 = 6e-13 of the radius of curvature at
+ * the very worst, and, unlike Newton's method, knows nothing of the singular matrix at a branch point. */
+static const double shortest = 1.0 / 256;
+
+static const int most_trials = 100; /* of Brent's method, which halves at least every other time */
+
+/* A trial is not to be nearer than this to a branch point, over how far the ends of the bracket are. */
+static const double too_near = 0.1;
+
+/* What is left of a function at its zero, over its values at the ends of the bracket: more, and it jumps. */
+static const double jump = 0.1;
+
+typedef struct search {
+  ric_curve *c;
+  ric_curve_point_kind kind;
+  size_t which;
+  double log_scale; /* of the determinant */
+  ric_error *error;
+  ric_status status; /* of the last evaluation */
+} search;
+
+static double value_of(const search *s, const curve_node *node) {
+  switch (s->kind) {
+  case RIC_CURVE_FOLD:
+    return node->t[s->c->problem.unknowns];
+  case RIC_CURVE_BRANCH_POINT:
+    return node->det.sign ? node->det.sign * exp(node->det.log - s->log_scale) : NAN;
+  default:
+    return node->tests[s->which];
+  }
+}
+
+/* A zero at the end of a step is found in it, not again in the next. NaN has no sign. */
+static bool sign_changes(double a, double b) {
+  return (a < 0 && b >= 0) || (a > 0 && b <= 0);
+}
+
+static cubic bracket_cubic(const search *s) {
+  return (cubic){s->c, s->c->row, &s->c->low, &s->c->high};
+}
+
+/* Predicts a node by the cubic of the bracket. */
+static void predict(const search *s, double sigma, curve_node *node) {
+  cubic q = bracket_cubic(s);
+  cubic_point(&q, sigma, node->x);
+  cubic_tangent(&q, sigma, node->t);
+  node->sigma = sigma;
+}
+
+/* Whether the bracket holds a branch point, near which the corrector is not to be trusted. */
+static bool holds_branch_point(const ric_curve *c) {
+  return c->low.det.sign * c->high.det.sign <= 0;
+}
+
+/* Near a branch point what Newton's method has left over is blown up in the tangent: another correction takes it away.
+ */
+static ric_status correct(const search *s, curve_node *node) {
+  ric_curve *c = s->c;
+  int again;
+  RIC_TRY(corrector_run(c, c->row, node->x, true, &node->iterations, s->error));
+  if (holds_branch_point(c))
+    RIC_TRY(corrector_run(c, c->row, node->x, true, &again, s->error));
+  RIC_TRY(corrector_tangent(c, node->t, &node->det, s->error));
+  return curve_tests(c, node, s->error);
+}
+
+static bool near_branch_point(const ric_curve *c) {
+  return !(c->trial.det.least >= too_near * fmax(c->low.det.least, c->high.det.least));
+}
+
+/* A corrected node well inside the bracket. A second place is tried, since the first may be a branch point. */
+static ric_status trial_inside(const search *s) {
+  static const double places[] = {0.5, 0.3};
+  const ric_curve *c = s->c;
+  ric_status status = RIC_OK;
+  for (int k = 0; k < 2; k++) {
+    predict(s, c->low.sigma + places[k] * (c->high.sigma - c->low.sigma), &s->c->trial);
+    status = correct(s, &s->c->trial);
+    if (status == RIC_OK && holds_branch_point(c) && near_branch_point(c))
+      status = ric_fail(s->error, RIC_ENUMERIC, "a trial at a branch point");
+    if (status != RIC_ENUMERIC)
+      break;
+  }
+  return status;
+}
+
+/* Shortens the bracket as far as the corrector gets.
+ * @param found  whether the function is defined at all trials */
+static ric_status shorten(const search *s, bool *found) {
+  ric_curve *c = s->c;
+  double end = fmax(shortest * (c->high.sigma - c->low.sigma), c->options.locate_tol);
+  *found = true;
+  while (c->high.sigma - c->low.sigma > end && *found) {
+    ric_status status = trial_inside(s);
+    if (status == RIC_ENUMERIC)
+      return RIC_OK;
+    RIC_TRY(status);
+    double value = value_of(s, &c->trial);
+    *found = !isnan(value);
+    curve_node_copy(c, sign_changes(value_of(s, &c->low), value) ? &c->high : &c->low, &c->trial);
+  }
+  return RIC_OK;
+}
+
+/* The determinant with the cubic's tangent as the row; zero where the matrix is exactly singular. */
+static ric_status determinant_at(const search *s, curve_node *node) {
+  ric_curve *c = s->c;
+  curve_tangent_row(c, node->t, c->bound_row);
+  ric_status status = bordered_factor(&c->linear, node->x, c->bound_row, s->error);
+  node->det = status == RIC_OK ? bordered_det(&c->linear) : (bordered_determinant){0};
+  return status == RIC_ENUMERIC && c->linear.singular ? RIC_OK : status;
+}
+
+/* The function on the cubic, for the solver of GSL, which gives up at NaN. */
+static double value_on_cubic(double sigma, void *user) {
+  search *s = user;
+  curve_node *node = &s->c->trial;
+  if (sigma == s->c->low.sigma)
+    return value_of(s, &s->c->low);
+  if (sigma == s->c->high.sigma)
+    return value_of(s, &s->c->high);
+  predict(s, sigma, node);
+  s->status = RIC_OK;
+  if (s->kind == RIC_CURVE_BRANCH_POINT) {
+    s->status = determinant_at(s, node);
+    if (s->status == RIC_OK && s->c->linear.singular)
+      return 0;
+  } else if (s->kind == RIC_CURVE_TEST) {
+    s->status = curve_tests(s->c, node, s->error);
+  }
+  return s->status == RIC_OK ? value_of(s, node) : NAN;
+}
+
+/* Brent's method on the bracket. @returns the zero, NaN when there is none */
+static double zero_of(search *s) {
+  const ric_curve *c = s->c;
+  gsl_function f = {value_on_cubic, s};
+  double low = c->low.sigma, high = c->high.sigma, p = c->low.x[c->problem.unknowns], root = high;
+  double tol = fmin(c->options.locate_tol * (1 + fabs(p)), 1e-3 * (high - low));
+  double most = fmax(fabs(value_of(s, &c->low)), fabs(value_of(s, &c->high)));
+  int code = gsl_root_fsolver_set(c->brent, &f, low, high);
+  for (int k = 0; k < most_trials && code == GSL_SUCCESS && high - low > tol; k++) {
+    code = gsl_root_fsolver_iterate(c->brent);
+    root = gsl_root_fsolver_root(c->brent);
+    low = gsl_root_fsolver_x_lower(c->brent);
+    high = gsl_root_fsolver_x_upper(c->brent);
+  }
+  return code == GSL_SUCCESS && fabs(value_on_cubic(root, s)) <= jump * most ? root : NAN;
+}
+
+/* Sets a node to the special point: on the cubic at a branch point, else corrected. */
+static ric_status settle(search *s, double sigma, curve_node *node) {
+  ric_curve *c = s->c;
+  predict(s, sigma, node);
+  node->kind = s->kind;
+  node->which = s->which;
+  node->det = (bordered_determinant){0};
+  node->iterations = 0;
+  if (!holds_branch_point(c))
+    return correct(s, node);
+  return curve_tests(c, node, s->error);
+}
+
+/* One sign change between `from` and `to`. @param found  whether `node` has been set to its place */
+static ric_status locate(search *s, curve_node *node, bool *found) {
+  ric_curve *c = s->c;
+  curve_node_copy(c, &c->low, &c->from);
+  curve_node_copy(c, &c->high, &c->to);
+  s->status = RIC_OK;
+  RIC_TRY(shorten(s, found));
+  double sigma = *found ? zero_of(s) : NAN;
+  *found = !isnan(sigma);
+  if (s->status != RIC_OK && s->status != RIC_ENUMERIC)
+    return s->status;
+  ric_status status = *found ? settle(s, sigma, node) : RIC_OK;
+  *found = *found && status == RIC_OK;
+  return status == RIC_ENUMERIC ? RIC_OK : status;
+}
+
+/* Moves the last of the special points to its place among those before it. */
+static void sort_in(curve_node *found, size_t count) {
+  for (size_t k = count - 1; k > 0 && found[k].sigma < found[k - 1].sigma; k--) {
+    curve_node last = found[k];
+    found[k] = found[k - 1];
+    found[k - 1] = last;
+  }
+}
+
+static ric_status look_for(search *s, size_t *count, size_t *missed) {
+  ric_curve *c = s->c;
+  bool found;
+  if (!sign_changes(value_of(s, &c->from), value_of(s, &c->to)))
+    return RIC_OK;
+  RIC_TRY(locate(s, &c->found[*count], &found));
+  if (!found) {
+    ++*missed;
+    return RIC_OK;
+  }
+  cubic q = {c, c->row, &c->from, &c->found[*count]};
+  c->found[*count].arclength = c->from.arclength + cubic_length(&q);
+  sort_in(c->found, ++*count);
+  return RIC_OK;
+}
+
+ric_status locate_special(ric_curve *c, size_t *count, size_t *missed, ric_error *error) {
+  search s = {.c = c, .error = error, .log_scale = fmax(c->from.det.log, c->to.det.log)};
+  *count = 0;
+  for (s.kind = RIC_CURVE_FOLD; s.kind <= RIC_CURVE_BRANCH_POINT; s.kind++)
+    RIC_TRY(look_for(&s, count, missed));
+  s.kind = RIC_CURVE_TEST;
+  for (s.which = 0; s.which < c->problem.tests; s.which++)
+    RIC_TRY(look_for(&s, count, missed));
+  return RIC_OK;
+}
