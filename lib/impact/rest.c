@@ -2,17 +2,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "model/largest.h"
 #include "trajectory_state.h"
 
 static ric_status blame(const ric_trajectory *tr, size_t obstacle, const char *trouble, ric_error *error) {
   return ric_fail(error, RIC_ECALLBACK, "at t = %g, obstacle %zu: %s", tr->flow->time, obstacle, trouble);
-}
-
-static double largest(const double *x, size_t count) {
-  double most = 0;
-  for (size_t i = 0; i < count; i++)
-    most = fmax(most, fabs(x[i]));
-  return most;
 }
 
 void contacts_measure(ric_trajectory *tr) {

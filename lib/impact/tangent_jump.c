@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "model/largest.h"
 #include "model/path_derivative.h"
 #include "model/tangent.h"
 
@@ -79,13 +80,6 @@ static const char *map_on_line(void *user, double x, double *value) {
   const char *trouble = map(p, p->t + x * j->in_time, j->point, j->point + n);
   memcpy(value, j->point, size * sizeof *value);
   return trouble;
-}
-
-static double largest(const double *x, size_t count) {
-  double most = 0;
-  for (size_t i = 0; i < count; i++)
-    most = fmax(most, fabs(x[i]));
-  return most;
 }
 
 /* The map of a first-order system means something where the gap closes: there the step stays. */

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "first_order.h"
+#include "largest.h"
 #include "path_derivative.h"
 #include "user_callback.h"
 

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "cholesky.h"
+#include "largest.h"
 #include "mechanical.h"
 #include "path_derivative.h"
 #include "user_callback.h"

@@ -33,7 +33,8 @@ static const char *rate_on_line(void *user, double x, double *rate) {
   return l->s->model->rate(l->s, l->contact, l->t, l->point, l->point + n, rate, rate + n);
 }
 
-static double largest(const double *x, size_t count, size_t stride) {
+/* Of a column. */
+static double largest_of(const double *x, size_t count, size_t stride) {
   double most = 0;
   for (size_t i = 0; i < count; i++)
     most = fmax(most, fabs(x[i * stride]));
@@ -42,10 +43,10 @@ static double largest(const double *x, size_t count, size_t stride) {
 
 static double step_of(const state_line *l) {
   size_t n = l->s->coordinates, m = l->s->speeds, columns = l->d->columns;
-  double size = fmax(largest(l->q, n, 1), m ? largest(l->u, m, 1) : 0);
-  double reach = largest(l->d->q + l->column, n, columns);
+  double size = fmax(largest_of(l->q, n, 1), m ? largest_of(l->u, m, 1) : 0);
+  double reach = largest_of(l->d->q + l->column, n, columns);
   if (m)
-    reach = fmax(reach, largest(l->d->u + l->column, m, columns));
+    reach = fmax(reach, largest_of(l->d->u + l->column, m, columns));
   return system_tangent_step(size, reach);
 }
 

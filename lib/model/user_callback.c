@@ -14,10 +14,3 @@ bool all_finite(const double *x, size_t count) {
       return false;
   return true;
 }
-
-double largest(const double *x, size_t count) {
-  double most = 0;
-  for (size_t i = 0; i < count; i++)
-    most = fmax(most, fabs(x[i]));
-  return most;
-}

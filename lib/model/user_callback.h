@@ -21,7 +21,4 @@ const char *callback_check(int code, const double *x, size_t count, const char *
 
 bool all_finite(const double *x, size_t count);
 
-/** Largest absolute value of x [count]; 0 for none. */
-double largest(const double *x, size_t count);
-
 #endif

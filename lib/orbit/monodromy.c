@@ -4,18 +4,13 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "model/largest.h"
+
 /* Sets M to the unit matrix: the tangent vectors to begin with. */
 static void set_unit(double *M, size_t size) {
   memset(M, 0, size * size * sizeof *M);
   for (size_t i = 0; i < size; i++)
     M[i * size + i] = 1;
-}
-
-static double largest(const double *x, size_t count) {
-  double most = 0;
-  for (size_t i = 0; i < count; i++)
-    most = fmax(most, fabs(x[i]));
-  return most;
 }
 
 /* Largest difference of two states, relative to the largest number of the first. */

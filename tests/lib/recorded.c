@@ -127,3 +127,18 @@ ric_system *falling_ball(double restitution) {
   floor.restitution = restitution;
   return lattice_system(&ball, &floor, 1);
 }
+
+ric_system *coupled_masses(const ric_obstacle *obstacles, size_t count) {
+  static const double mass[] = {2, 0.5, 0.2, 0.5, 1.5, -0.3, 0.2, -0.3, 1}, push[] = {0.5, 0, -0.4};
+  static const double damping[] = {0.02, 0, 0, 0, 0.03, 0, 0, 0, 0.01};
+  static const double stiffness[] = {2, -1, 0, -1, 2.5, -0.7, 0, -0.7, 1.8};
+  const ric_mck model = {.coordinates = 3,
+                         .mass.values = mass,
+                         .damping.values = damping,
+                         .stiffness.values = stiffness,
+                         .frequency = 0.9,
+                         .force_sin = push};
+  ric_system *system = NULL;
+  assert_int_equal(ric_system_create_mck(&model, obstacles, count, &system, NULL), RIC_OK);
+  return system;
+}

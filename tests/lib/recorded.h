@@ -37,6 +37,9 @@ double growth_of(const ric_system *system, const double *q, const double *u, dou
 /** A system of a lattice; asserts that it can be made. */
 ric_system *lattice_system(const ric_lattice *lattice, const ric_obstacle *obstacles, size_t count);
 
+/** Three masses that share inertia, on springs and dampers, pushed harmonically. */
+ric_system *coupled_masses(const ric_obstacle *obstacles, size_t count);
+
 /** A particle under gravity 1 over a floor at 0. */
 ric_system *falling_ball(double restitution);
 

@@ -101,21 +101,11 @@ static void hertz_contacts_touched_at_rest_go_on(void **state) {
 /* Masses that share inertia, floors and walls, e = 0.9: coupled impulses, forces through the mass matrix. */
 static void flows_agree_on_coupled_masses(void **state) {
   (void)state;
-  static const double mass[] = {2, 0.5, 0.2, 0.5, 1.5, -0.3, 0.2, -0.3, 1}, push[] = {0.5, 0, -0.4};
-  static const double damping[] = {0.02, 0, 0, 0, 0.03, 0, 0, 0, 0.01};
-  static const double stiffness[] = {2, -1, 0, -1, 2.5, -0.7, 0, -0.7, 1.8};
-  const ric_mck model = {.coordinates = 3,
-                         .mass.values = mass,
-                         .damping.values = damping,
-                         .stiffness.values = stiffness,
-                         .frequency = 0.9,
-                         .force_sin = push};
   ric_obstacle sides[4] = {ric_obstacle_floor(0, -0.4), ric_obstacle_wall(1, 0.3), ric_obstacle_floor(2, -0.5),
                            ric_obstacle_wall(2, 0.6)};
   for (int i = 0; i < 4; i++)
     sides[i].restitution = 0.9;
-  ric_system *system = NULL;
-  assert_int_equal(ric_system_create_mck(&model, sides, 4, &system, NULL), RIC_OK);
+  ric_system *system = coupled_masses(sides, 4);
   ric_trajectory_options options = ric_trajectory_options_default();
   recorded taylor = record(system, &options, (double[]){0.3, 0.1, -0.2}, (double[]){0, 0.4, 0.5}, 20);
   options.flow.method = RIC_FLOW_CVODES;
