@@ -11,7 +11,8 @@
  *              told from rounding
  *   unknown    there is no orbit, or the motion is not differentiable: the reason says why
  *
- * The band is 1e-6, and 1e-4 near 1: there, multipliers that meet split by a root of the rounding error. */
+ * The band is 1e-6, and 1e-4 near 1 where two are 1 already: there, multipliers that meet split by the fourth root of
+ * the rounding error. */
 #ifndef RICOCHET_MULTIPLIERS_H
 #define RICOCHET_MULTIPLIERS_H
 
