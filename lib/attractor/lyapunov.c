@@ -25,15 +25,22 @@ typedef struct course {
   double *growth;  /* [count] logarithms of R's diagonal of one interval */
   double *sum;     /* [count] of them all */
   double begin;    /* time at which the sums begin */
+  double mark;     /* end of the present interval */
+  double stride;   /* from one factorisation to the next within it */
   orthonormal_work work;
   ric_lyapunov *result;
 } course;
 
+/* Shorter ones are lost in the rounding of time. */
+static double least_interval(double t) {
+  return 1e-12 * (1 + fabs(t));
+}
+
 static ric_status check(const ric_lyapunov_options *o, size_t size, double end, ric_error *error) {
   if (o->count > size)
     return ric_fail(error, RIC_EINVAL, "count = %zu, expected at most %zu exponents (or 0: all)", o->count, size);
-  if (!(o->interval > 1e-12 * (1 + fabs(end)))) /* shorter ones are lost in the rounding of time */
-    return ric_fail(error, RIC_EINVAL, "interval = %g, expected > %g", o->interval, 1e-12 * (1 + fabs(end)));
+  if (!(o->interval > least_interval(end)))
+    return ric_fail(error, RIC_EINVAL, "interval = %g, expected > %g", o->interval, least_interval(end));
   if (!(o->transient >= 0 && o->transient < INFINITY))
     return ric_fail(error, RIC_EINVAL, "transient = %g, expected a finite number >= 0", o->transient);
   return RIC_OK;
@@ -100,12 +107,29 @@ static void take_stock(course *c, double length, double *exponents) {
   }
 }
 
-static double next_stop(const course *c, double end) {
-  double t = time_now(c), stop = fmin(t + c->options->interval, end);
-  return t < c->begin ? fmin(stop, c->begin) : stop;
+/* Vectors part by no more than e^7 in a stride: what is left of one that lies in the span of those before it has been
+ * put out by a contact. */
+static void adapt(course *c) {
+  double most = -INFINITY, least = INFINITY;
+  for (size_t k = 0; k < c->count; k++)
+    if (c->growth[k] > -INFINITY) {
+      most = fmax(most, c->growth[k]);
+      least = fmin(least, c->growth[k]);
+    }
+  double spread = most > least ? most - least : 0;
+  c->stride = fmin(c->stride * fmin(2, fmax(0.25, 7 / spread)), c->options->interval);
+  c->stride = fmax(c->stride, least_interval(time_now(c)));
 }
 
-/* One interval. @param over  whether it was the last */
+/* The end of the present interval is in c->mark; strides that would leave a sliver of it go all the way. */
+static double next_stop(course *c, double end) {
+  double t = time_now(c);
+  if (!(c->mark > t))
+    c->mark = fmin(t + c->options->interval, t < c->begin ? fmin(c->begin, end) : end);
+  return t + 1.2 * c->stride < c->mark ? t + c->stride : c->mark;
+}
+
+/* One stride. @param over  whether it was the last */
 static ric_status advance(course *c, double end, double *exponents, bool *over, ric_error *error) {
   const ric_lyapunov_options *o = c->options;
   double start = time_now(c);
@@ -117,7 +141,9 @@ static ric_status advance(course *c, double end, double *exponents, bool *over, 
   if (ric_trajectory_columns(c->trajectory) != c->count || !(time_now(c) > start))
     return RIC_OK;
   take_stock(c, time_now(c) - start, exponents);
-  if (c->result->time > 0 && o->history && o->history(c->result->time, exponents, c->count, o->user) != 0) {
+  adapt(c);
+  bool reported = time_now(c) >= c->mark || *over;
+  if (reported && c->result->time > 0 && o->history && o->history(c->result->time, exponents, c->count, o->user) != 0) {
     c->result->run.outcome = RIC_RUN_ENDED;
     snprintf(c->result->run.reason, sizeof c->result->run.reason, "the history asked for the end");
     *over = true;
@@ -143,7 +169,9 @@ ric_status ric_lyapunov_run(ric_trajectory *trajectory, double end, const ric_ly
   course c = {.trajectory = trajectory, .options = &o, .n = system->coordinates, .result = lyapunov};
   c.size = c.n + system->speeds;
   c.count = o.count ? o.count : c.size;
-  c.begin = time_now(&c) + o.transient;
+  c.mark = time_now(&c);
+  c.begin = c.mark + o.transient;
+  c.stride = o.interval / 64;
   *lyapunov = (ric_lyapunov){0};
   RIC_TRY(check(&o, c.size, end, error));
   for (size_t k = 0; k < c.count; k++)

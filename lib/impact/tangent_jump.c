@@ -106,8 +106,8 @@ static const char *differentiate(passage *p) {
   size_t n = j->system->coordinates, size = n + j->system->speeds;
   if (j->system->obstacles) /* the law is linear in the speeds, and depends on nothing else */
     return map(p, p->t, j->line, j->line + n);
-  double reach = fmax(largest(j->line, size), fabs(j->in_time));
-  double step = system_tangent_step(largest(j->state, size), reach);
+  double place = fmax(largest(j->line, n), fabs(j->in_time));
+  double step = system_tangent_step(place, largest(j->line + n, size - n), largest(j->state + n, size - n));
   const char *trouble = j->system->model->direction ? NULL : keep_closing(p, &step);
   if (!trouble)
     trouble = path_derivative(map_on_line, p, step, size, j->derivative, j->work);

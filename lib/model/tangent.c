@@ -2,14 +2,16 @@
 
 #include <math.h>
 
+#include "largest.h"
 #include "path_derivative.h"
 
 size_t system_tangent_work(const ric_system *s) {
   return 4 * (s->coordinates + s->speeds);
 }
 
-double system_tangent_step(double size, double reach) {
-  return reach > 0 ? 2e-3 * fmax(1, size) / reach : 1;
+double system_tangent_step(double place, double pace, double speed) {
+  double reach = fmax(place, pace / fmax(1, speed));
+  return reach > 0 ? 2e-3 / reach : 1;
 }
 
 /* A straight line of states through (q, u) along one tangent vector. */
@@ -43,11 +45,9 @@ static double largest_of(const double *x, size_t count, size_t stride) {
 
 static double step_of(const state_line *l) {
   size_t n = l->s->coordinates, m = l->s->speeds, columns = l->d->columns;
-  double size = fmax(largest_of(l->q, n, 1), m ? largest_of(l->u, m, 1) : 0);
-  double reach = largest_of(l->d->q + l->column, n, columns);
-  if (m)
-    reach = fmax(reach, largest_of(l->d->u + l->column, m, columns));
-  return system_tangent_step(size, reach);
+  double place = largest_of(l->d->q + l->column, n, columns);
+  double pace = m ? largest_of(l->d->u + l->column, m, columns) : 0;
+  return system_tangent_step(place, pace, m ? largest(l->u, m) : 0);
 }
 
 const char *system_tangent(const ric_system *s, const unsigned char *contact, double t, const double *q,

@@ -106,7 +106,7 @@ static double place(const secular *s, const arc *a) {
 static size_t count_on(secular *s, const arc *a, int depth) {
   long signs;
   size_t seen = seen_on(s, a, &signs), bound = bound_on(a, signs);
-  if (depth == 0 || seen == 0 || bound == seen || a->high - a->low < undivided(a))
+  if (s->stopped || depth == 0 || seen == 0 || bound == seen || a->high - a->low < undivided(a))
     return bound;
   arc left, right;
   double at = a->last - a->first > 1 ? between_poles(s, a) : a->low;
@@ -136,8 +136,6 @@ typedef struct search {
   double *angles;
   size_t count, room;
   int spare;
-  ric_poll poll;
-  bool stopped;
 } search;
 
 /* The sign of det H and its logarithm, that of its modulus, up to a smooth factor. */
@@ -186,7 +184,7 @@ static void find_on(search *x, const arc *a, int spare) {
   size_t seen = seen_on(x->s, a, &signs), bound = bound_on(a, signs);
   double length = a->high - a->low;
   bool barren = bound == 0 && seen <= 1;
-  if (x->stopped || (barren && seen == 1 && spare == 0))
+  if (x->s->stopped || (barren && seen == 1 && spare == 0))
     return;
   if (length <= (seen > 0 ? undivided(a) : shortest * fmax(1, a->high))) {
     put(x, (a->low + a->high) / 2, bound);
@@ -201,15 +199,13 @@ static void find_on(search *x, const arc *a, int spare) {
     put(x, (a->low + a->high) / 2, bound);
     return;
   }
-  x->stopped = x->s->evaluations % 64 == 0 && ric_poll_stops(x->poll);
   find_on(x, &left, barren ? spare - 1 : x->spare);
   find_on(x, &right, barren ? spare - 1 : x->spare);
 }
 
-ric_status circle_find(secular *s, double from, size_t wanted, double *angles, size_t *count, ric_poll poll,
-                       ric_error *error) {
+ric_status circle_find(secular *s, double from, size_t wanted, double *angles, size_t *count, ric_error *error) {
   arc whole = whole_circle(s, from);
-  search x = {.s = s, .angles = angles, .room = angles ? s->particles : 0, .poll = poll};
+  search x = {.s = s, .angles = angles, .room = angles ? s->particles : 0};
   for (x.spare = 2; x.spare <= 8; x.spare += 3) {
     x.count = 0;
     for (size_t j = 0; j < s->particles; j++)
@@ -217,7 +213,7 @@ ric_status circle_find(secular *s, double from, size_t wanted, double *angles, s
         put(&x, s->poles[j].angle, 1);
     find_on(&x, &whole, x.spare);
     *count = x.count;
-    if (x.stopped)
+    if (s->stopped)
       return ric_fail(error, RIC_ESTOPPED, "stopped on the unit circle");
     if (x.count >= wanted)
       break;

@@ -29,7 +29,6 @@ size_t circle_near_one(secular *s, double band);
  *  @param angles  [n], or NULL to count; @param count  set to their number
  *  @param wanted  no need to look for more
  *  @returns RIC_ESTOPPED */
-ric_status circle_find(secular *s, double from, size_t wanted, double *angles, size_t *count, ric_poll poll,
-                       ric_error *error);
+ric_status circle_find(secular *s, double from, size_t wanted, double *angles, size_t *count, ric_error *error);
 
 #endif

@@ -61,17 +61,18 @@ static ric_status tell(secular *s, const ric_orbit_multiplier_options *o, told *
   look_near_one(s, o->judge.band_at_one, t);
   size_t close = 1 + (t->from > 0 ? t->near_one / 2 : 0); /* pairs */
   for (int stage = 0; stage < 3 && !all_told(s, t); stage++) {
-    if (ric_poll_stops(o->poll))
-      return ric_fail(error, RIC_ESTOPPED, "stopped at |mu| = 1 + %g", distances[stage]);
     if (stage < 2)
       t->on_circle = close + circle_count(s, t->from, depth[stage]);
-    if (!all_told(s, t) && !count_outside(s, distances[stage], t))
+    bool counted = all_told(s, t) || count_outside(s, distances[stage], t);
+    if (s->stopped)
+      return ric_fail(error, RIC_ESTOPPED, "stopped at |mu| = 1 + %g", distances[stage]);
+    if (!counted)
       return ric_fail(error, RIC_ENUMERIC, "winding number along |mu| = 1 + %g is not whole", distances[stage]);
   }
   if (all_told(s, t) || t->outside > 0)
     return RIC_OK;
   size_t found;
-  RIC_TRY(circle_find(s, t->from, s->particles - close, NULL, &found, o->poll, error));
+  RIC_TRY(circle_find(s, t->from, s->particles - close, NULL, &found, error));
   t->on_circle = close + found > t->on_circle ? close + found : t->on_circle;
   return RIC_OK;
 }
@@ -111,7 +112,7 @@ static ric_status complete(secular *s, double from, const ric_orbit_multiplier_o
   double *angles = malloc(s->particles * sizeof *angles);
   if (!angles)
     return ric_fail(error, RIC_ENOMEM, "no memory for %zu multipliers", s->particles);
-  ric_status status = circle_find(s, from, wanted, angles, &found, o->poll, error);
+  ric_status status = circle_find(s, from, wanted, angles, &found, error);
   put_inverses(m);
   put_on_circle(m, angles, found);
   free(angles);
@@ -128,9 +129,13 @@ static ric_status complete(secular *s, double from, const ric_orbit_multiplier_o
 ric_status determinant_multipliers(secular *s, const ric_orbit_multiplier_options *o, ric_multipliers *m,
                                    ric_error *error) {
   told t;
+  s->poll = o->poll;
+  s->stopped = false;
   RIC_TRY(tell(s, o, &t, error));
   size_t n = s->particles, untold = t.on_circle + t.outside < n ? n - t.on_circle - t.outside : 0;
   locate(s, &t, m);
+  if (s->stopped)
+    return ric_fail(error, RIC_ESTOPPED, "stopped on the way to the multipliers outside");
   size_t missing = t.outside > m->count ? t.outside - m->count : 0;
   multipliers_judge_outside(m, untold, t.near_one, &o->judge);
   if (missing > t.near_one) {

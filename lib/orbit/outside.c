@@ -164,7 +164,7 @@ static void search(found *x, const box *b, size_t count) {
   double complex zero;
   box parts[2];
   size_t counts[2];
-  if (count == 0)
+  if (count == 0 || x->s->stopped)
     return;
   if (count == 1 && polish(x->s, b, &zero)) {
     accept(x, zero, 1);
@@ -183,7 +183,7 @@ static void search(found *x, const box *b, size_t count) {
 static double far_away(secular *s, double radius) {
   double far = fmax(2, 2 * radius);
   size_t beyond = 1;
-  while (far < 600 && (!winding_outside(s, far, &beyond) || beyond > 0))
+  while (far < 600 && !s->stopped && (!winding_outside(s, far, &beyond) || beyond > 0))
     far *= 1.7;
   return far;
 }

@@ -138,6 +138,9 @@ static double complex log_determinant(double complex *a, size_t size) {
 }
 
 double complex secular_log(secular *s, double complex zeta) {
+  s->stopped = s->stopped || ric_poll_stops(s->poll);
+  if (s->stopped)
+    return CMPLX(NAN, NAN);
   set_sums(s, zeta);
   set_matrix(s, zeta);
   return log_determinant(s->matrix, 2 * s->impacts);

@@ -62,6 +62,8 @@ typedef struct secular {
   gsl_vector *eigenvalues;
   gsl_eigen_symm_workspace *work;
   size_t evaluations;
+  ric_poll poll; /* asked at every evaluation */
+  bool stopped;  /* it asked for the end: all that follows is without meaning */
 } secular;
 
 void secular_clear(secular *s);

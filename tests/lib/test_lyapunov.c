@@ -115,7 +115,7 @@ static void exponents_of_conservative_motion_vanish_like_ln_t_over_t(void **stat
   ric_system_destroy(&ball);
 }
 
-static void history_sees_every_factorisation_and_may_end_the_run(void **state) {
+static void history_sees_every_interval_and_may_end_the_run(void **state) {
   (void)state;
   records r = {0};
   double exponents[2], q = 0.5, u = 0;
@@ -132,6 +132,23 @@ static void history_sees_every_factorisation_and_may_end_the_run(void **state) {
   assert_true(r.last == exponents[0]);
   ric_trajectory_destroy(&trajectory);
   ric_system_destroy(&ball);
+}
+
+/* x'' + 40 x' + x = 0 for the default interval: one direction shrinks by e^-40 in it. */
+static void strong_damping_puts_nothing_out(void **state) {
+  (void)state;
+  double exponents[2], q = 0.5, u = 0, root = sqrt(399.0);
+  ric_lattice mass = ric_lattice_default(1, RIC_ENDS_FREE);
+  mass.on_site.damping = 40;
+  ric_system *system = lattice_system(&mass, NULL, 0);
+  ric_trajectory *trajectory = started(system, 0, &q, &u);
+  ric_lyapunov_options options = ric_lyapunov_options_default();
+  options.transient = 5;
+  exponents_of(trajectory, 25, &options, exponents);
+  assert_close(exponents[0], -20 + root, 1e-9);
+  assert_close(exponents[1], -20 - root, 1e-9);
+  ric_trajectory_destroy(&trajectory);
+  ric_system_destroy(&system);
 }
 
 static void rest_puts_directions_out(void **state) {
@@ -173,7 +190,8 @@ int main(void) {
       cmocka_unit_test(exponents_of_a_forced_orbit_are_logarithms_of_its_multipliers),
       cmocka_unit_test(exponents_add_up_to_the_divergence),
       cmocka_unit_test(exponents_of_conservative_motion_vanish_like_ln_t_over_t),
-      cmocka_unit_test(history_sees_every_factorisation_and_may_end_the_run),
+      cmocka_unit_test(history_sees_every_interval_and_may_end_the_run),
+      cmocka_unit_test(strong_damping_puts_nothing_out),
       cmocka_unit_test(rest_puts_directions_out),
       cmocka_unit_test(bad_options_are_refused),
   };

@@ -6,19 +6,19 @@
  * multipliers are simple, and like ln(t) / t where two of a conservative motion meet. Their sum is the mean divergence
  * plus the mean rate of ln e^2 at the impacts.
  *
- * Contacts that come to rest, and impacts with restitution 0, put a direction out: its exponent is -INFINITY. */
+ * Contacts that come to rest, and impacts with restitution 0, put a direction out: its exponent is -INFINITY. So does
+ * what squeezes a vector to 1e-13 of itself at once. */
 #ifndef RICOCHET_LYAPUNOV_H
 #define RICOCHET_LYAPUNOV_H
 
 #include "trajectory.h"
 
 typedef struct ric_lyapunov_options {
-  size_t count;     /* exponents wanted; 0 (default): all n + m */
-  double interval;  /* time from one factorisation to the next, > 1e-12 (1 + |end|); default 1. Short enough for tangent
-                       vectors that  neither overflow nor become parallel: one that lies in the span of those before it
-                       within 1e-13  counts as put out */
+  size_t count;    /* exponents wanted; 0 (default): all n + m */
+  double interval; /* time from one report of the exponents to the next, > 1e-12 (1 + |end|); default 1. The vectors are
+                      made orthonormal at least that often, and before they part by more than about e^7 */
   double transient; /* time, >= 0, after which the sums begin; default 0 */
-  /** Sees the exponents after every factorisation, NULL for none; non-zero ends the run with the outcome `ended`.
+  /** Sees the exponents after every interval, NULL for none; non-zero ends the run with the outcome `ended`.
    *  @param time  since the sums began
    *  @param exponents  [count] so far */
   int (*history)(double time, const double *exponents, size_t count, void *user);
