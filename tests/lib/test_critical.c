@@ -102,6 +102,21 @@ static void bad_ranges_are_refused(void **state) {
   scenario_clear(&s);
 }
 
+/* Two neighbours that hit together: the pair that meets at +1 moves them apart, and there the contact equations are
+ * singular. */
+static void pairs_that_break_a_symmetry_are_found_from_any_grid(void **state) {
+  (void)state;
+  scenario s = scenario_word("ss", 1, RIC_ENDS_FIXED, 0.4, 6.0921765756413766);
+  for (size_t points = 2; points <= 40; points += 19) {
+    ric_critical found[ROOM];
+    size_t count = critical_of(&s, RIC_ALONG_GAMMA, 0.4, 0.5, points, found), hits = 0;
+    for (size_t i = 0; i < count; i++)
+      hits += fabs(found[i].parameter - 0.4644336073) < 1e-8 && found[i].kind == RIC_CRITICAL_PLUS_ONE;
+    assert_int_equal(hits, 1);
+  }
+  scenario_clear(&s);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(example_1_loses_stability_at_plus_one),
@@ -109,6 +124,7 @@ int main(void) {
       cmocka_unit_test(both_directions_meet_on_one_boundary),
       cmocka_unit_test(number_outside_changes_across_every_critical_parameter),
       cmocka_unit_test(bad_ranges_are_refused),
+      cmocka_unit_test(pairs_that_break_a_symmetry_are_found_from_any_grid),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

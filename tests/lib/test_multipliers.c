@@ -93,6 +93,18 @@ static void verdicts_and_kinds_have_names(void **state) {
   assert_string_equal(ric_critical_name(RIC_CRITICAL_KINDS), "unknown kind");
 }
 
+/* A motion has no trivial multipliers that are not at 1. */
+static void multipliers_far_from_1_are_not_trivial(void **state) {
+  (void)state;
+  static const double M[4] = {2, 0, 0, 0.5};
+  ric_multipliers m;
+  assert_int_equal(ric_multipliers_init(&m, 2, NULL), RIC_OK);
+  assert_int_equal(ric_multipliers_of_matrix(M, 2, 2, NULL, &m, NULL), RIC_OK);
+  assert_int_equal(m.stable, RIC_UNDECIDED);
+  assert_non_null(strstr(m.reason, "lies 1 from 1"));
+  ric_multipliers_clear(&m);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(verdict_leaves_out_the_trivial_multipliers),
@@ -101,6 +113,7 @@ int main(void) {
       cmocka_unit_test(multipliers_are_sorted_by_modulus_then_argument),
       cmocka_unit_test(bad_arguments_are_refused),
       cmocka_unit_test(verdicts_and_kinds_have_names),
+      cmocka_unit_test(multipliers_far_from_1_are_not_trivial),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

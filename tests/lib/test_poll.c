@@ -93,12 +93,40 @@ static void absent_callback_never_stops(void **state) {
   assert_int_equal(ric_poll_stops((ric_poll){0}), 0);
 }
 
+/* The determinant method is asked at every value of the determinant. */
+static void multipliers_stop_at_any_call(void **state) {
+  (void)state;
+  countdown all = {.limit = INT32_MAX};
+  solved x = solved_by(RIC_METHOD_IMPULSE, scenario_word("s.........", 4, RIC_ENDS_PERIODIC, 0.3, 5));
+  ric_orbit_multiplier_options options = ric_orbit_multiplier_options_default();
+  ric_multipliers m;
+  ric_error error;
+  options.method = RIC_MULTIPLIERS_DETERMINANT;
+  assert_int_equal(ric_multipliers_init(&m, 80, NULL), RIC_OK);
+  options.poll = (ric_poll){.call = count, .user = &all};
+  assert_int_equal(
+      ric_orbit_multipliers(x.solver, &x.scenario.chain, x.scenario.pattern, &x.orbit, &options, &m, &error), RIC_OK);
+  assert_true(all.calls > 100);
+  for (int limit = 1; limit < all.calls; limit += all.calls / 10) {
+    countdown c = {.limit = limit};
+    options.poll.user = &c;
+    assert_int_equal(
+        ric_orbit_multipliers(x.solver, &x.scenario.chain, x.scenario.pattern, &x.orbit, &options, &m, &error),
+        RIC_ESTOPPED);
+    assert_int_equal(m.stable, RIC_STABILITY_UNKNOWN);
+    assert_true(c.calls < limit + 3);
+  }
+  ric_multipliers_clear(&m);
+  solved_clear(&x);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(solving_stops_at_every_call_and_can_be_repeated),
       cmocka_unit_test(asking_for_states_stops),
       cmocka_unit_test(search_for_singular_points_stops),
       cmocka_unit_test(absent_callback_never_stops),
+      cmocka_unit_test(multipliers_stop_at_any_call),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

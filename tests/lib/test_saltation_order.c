@@ -242,6 +242,65 @@ static void runs_end_where_a_contact_grazes(void **state) {
   ric_system_destroy(&system);
 }
 
+/* A ball as a first-order system, whose map means nothing where the gap opens. */
+static int ball_rate(double t, const double *x, double *rate, void *user) {
+  (void)t, (void)user;
+  rate[0] = x[1];
+  rate[1] = -1;
+  return 0;
+}
+
+static int ball_gap(double t, const double *x, size_t obstacle, double *h, void *user) {
+  (void)t, (void)obstacle, (void)user;
+  *h = x[0];
+  return 0;
+}
+
+static int ball_impact(double t, const double *x, size_t obstacle, double *after, void *user) {
+  (void)t, (void)obstacle, (void)user;
+  after[0] = x[0];
+  after[1] = x[1] < 0 ? -0.8 * x[1] : 1000;
+  return 0;
+}
+
+static void impact_maps_are_differentiated_where_gaps_close(void **state) {
+  (void)state;
+  const ric_first_order model = {
+      .states = 2, .obstacles = 1, .rate = ball_rate, .gap = ball_gap, .impact = ball_impact};
+  ric_system *system = NULL;
+  assert_int_equal(ric_system_create_first_order(&model, &system, NULL), RIC_OK);
+  for (double rate = 1; rate > 1e-5; rate /= 10) {
+    double S[4], x[2] = {0, -rate};
+    ric_saltation_kind kind;
+    assert_int_equal(ric_saltation_find(system, 0, x, NULL, &(size_t){0}, 1, 1e-10, S, NULL, &kind, NULL), RIC_OK);
+    assert_close(S[0], -0.8, 1e-10);
+    assert_close(S[3], -0.8, 1e-8);
+    assert_close(S[2], 1.8 / rate, 1e-6 / rate); /* (a+ + e a-) / v- with a = -1 */
+  }
+  ric_system_destroy(&system);
+}
+
+/* Vectors that are handed to a trajectory whose contact rests lose what the contact holds. */
+static void vectors_carried_at_rest_are_held(void **state) {
+  (void)state;
+  ric_lattice mass = ric_lattice_default(1, RIC_ENDS_FREE);
+  ric_obstacle floor = ric_obstacle_floor(0, 0.5); /* the spring presses onto it */
+  floor.restitution = 0;
+  ric_system *system = lattice_system(&mass, &floor, 1);
+  ric_trajectory *trajectory = NULL;
+  ric_run run;
+  assert_int_equal(ric_trajectory_create(system, NULL, &trajectory, NULL), RIC_OK);
+  assert_int_equal(ric_trajectory_start(trajectory, 0, (double[]){1}, (double[]){0}, NULL), RIC_OK);
+  assert_int_equal(ric_trajectory_run(trajectory, 5, NULL, &run, NULL), RIC_OK);
+  assert_true(ric_trajectory_rests(trajectory, 0));
+  assert_int_equal(ric_trajectory_carry(trajectory, 2, (double[]){1, 0}, (double[]){0, 1}, NULL), RIC_OK);
+  assert_int_equal(ric_trajectory_run(trajectory, 6, NULL, &run, NULL), RIC_OK);
+  for (int k = 0; k < 2; k++)
+    assert_true(ric_trajectory_dq(trajectory)[k] == 0 && ric_trajectory_du(trajectory)[k] == 0);
+  ric_trajectory_destroy(&trajectory);
+  ric_system_destroy(&system);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(determinant_is_the_square_of_the_restitution),
@@ -251,6 +310,8 @@ int main(void) {
       cmocka_unit_test(coupled_contacts_have_no_derivative),
       cmocka_unit_test(rest_takes_the_tangent_vectors_of_a_contact),
       cmocka_unit_test(runs_end_where_a_contact_grazes),
+      cmocka_unit_test(impact_maps_are_differentiated_where_gaps_close),
+      cmocka_unit_test(vectors_carried_at_rest_are_held),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
