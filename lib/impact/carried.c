@@ -76,11 +76,12 @@ void carried_mark(ric_trajectory *tr) {
   memcpy(tr->carried.contact_before, f->contact, tr->system->obstacle_count);
 }
 
-void carried_lose(ric_trajectory *tr, size_t obstacle, ric_saltation_kind kind) {
+void carried_lose(ric_trajectory *tr, size_t obstacle, double time, ric_saltation_kind kind) {
   if (!carries(tr) || tr->carried.kind != RIC_SALTATION_DIFFERENTIABLE)
     return;
   tr->carried.kind = kind;
   tr->carried.obstacle = obstacle;
+  tr->carried.time = time;
 }
 
 void carried_hold(ric_trajectory *tr, size_t obstacle) {
@@ -89,7 +90,7 @@ void carried_hold(ric_trajectory *tr, size_t obstacle) {
   if (!carries(tr))
     return;
   if (!o) { /* no way to tell the directions that it leaves from the one that it takes */
-    carried_lose(tr, obstacle, RIC_SALTATION_NOT_DIFFERENTIABLE);
+    carried_lose(tr, obstacle, tr->flow->time, RIC_SALTATION_NOT_DIFFERENTIABLE);
     return;
   }
   memset(d->q + o[obstacle].coordinate * d->columns, 0, d->columns * sizeof *d->q);
@@ -134,7 +135,7 @@ static ric_status pass(ric_trajectory *tr, size_t which, size_t hits, bool last,
   RIC_TRY(tangent_jump_apply(&c->jump, tr->flow->time, &group, tr->options.grazing_tol, c->contact, c->contact_after,
                              c->state, c->state + n, d, &kind, error));
   if (kind != RIC_SALTATION_DIFFERENTIABLE)
-    carried_lose(tr, obstacle, kind);
+    carried_lose(tr, obstacle, tr->flow->time, kind);
   return RIC_OK;
 }
 
@@ -163,7 +164,7 @@ ric_status carried_meet(ric_trajectory *tr, size_t hits, ric_error *error) {
   if (!carries(tr) || hits == 0 || c->kind != RIC_SALTATION_DIFFERENTIABLE)
     return RIC_OK;
   if (any_coupled(tr, hits)) {
-    carried_lose(tr, tr->impacts[0].obstacle, RIC_SALTATION_NOT_DIFFERENTIABLE);
+    carried_lose(tr, tr->impacts[0].obstacle, tr->flow->time, RIC_SALTATION_NOT_DIFFERENTIABLE);
     return RIC_OK;
   }
   other.u = other.q + n * d->columns;
@@ -173,7 +174,7 @@ ric_status carried_meet(ric_trajectory *tr, size_t hits, ric_error *error) {
   }
   RIC_TRY(pass_all(tr, hits, false, d, error));
   if (hits > 1 && !tangent_jumps_agree(d->q, other.q, size))
-    carried_lose(tr, tr->impacts[0].obstacle, RIC_SALTATION_NOT_DIFFERENTIABLE);
+    carried_lose(tr, tr->impacts[0].obstacle, tr->flow->time, RIC_SALTATION_NOT_DIFFERENTIABLE);
   /* Contacts that the impacts have closed leave no more of their directions than rounding, which is not to be kept. */
   for (size_t i = 0; tr->system->obstacles && i < tr->held.count; i++)
     carried_hold(tr, tr->held.items[i]);
@@ -182,7 +183,7 @@ ric_status carried_meet(ric_trajectory *tr, size_t hits, ric_error *error) {
 
 ric_status carried_end(ric_trajectory *tr, char *reason, size_t room, ric_error *error) {
   bool grazes = tr->carried.kind == RIC_SALTATION_GRAZING;
-  snprintf(reason, room, "at t = %g tangent vectors have no way through %s obstacle %zu", tr->flow->time,
+  snprintf(reason, room, "at t = %g tangent vectors have no way through %s obstacle %zu", tr->carried.time,
            grazes ? "the grazing contact of" : "impacts at one time, one of them on", tr->carried.obstacle);
   tr->carried.kind = RIC_SALTATION_DIFFERENTIABLE;
   return ric_flow_carry(tr->flow, 0, NULL, NULL, error);

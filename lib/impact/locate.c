@@ -100,15 +100,25 @@ static bool comes_near(const scan *s, const gap_part *part) {
   return !ric_poly_is_positive(lowered, part->degree);
 }
 
+/* Whether a minimum above zero is one of its own, and not the touch that rounding has made a root: a root behind it is
+ * one through which the gap falls. Below zero by rounding alone it has no root. */
+static bool is_near_miss(const gap_part *part, bool found, double y, double at, double least, double noise) {
+  double slope;
+  if (!found)
+    return true;
+  ric_poly_value(part->c, part->degree, y, &slope);
+  return least > 0 && at < y && (slope < 0 || least > noise);
+}
+
 /* Root and near misses of an open rigid contact on one part; `found` ends the search along the piece. */
 static ric_status look_at_gap(scan *s, size_t obstacle, const gap_part *part, departure from, bool *found) {
-  double y, at, least, width = part->to - part->from;
+  double y = 0, at, least, width = part->to - part->from;
   *found = false;
   if (from == DEPARTED && !comes_near(s, part))
     return RIC_OK;
   *found = first_root(s, obstacle, part, from, &y);
   if (from != DEPARTS_SLOWLY && ric_poly_first_minimum(part->c, part->degree, s->l->grazing_tol, &at, &least) &&
-      least > 0 && !(*found && at >= y))
+      is_near_miss(part, *found, y, at, least, s->l->noise))
     RIC_TRY(
         add_hit(&s->l->grazes, (hit){.obstacle = obstacle, .x = part->from + at * width, .depth = least}, s->error));
   return *found ? found_root(s, obstacle, part->from + y * width) : RIC_OK;

@@ -197,10 +197,10 @@ static ric_status sort_root(ric_trajectory *tr, size_t obstacle, ric_error *erro
     RIC_TRY(is_pressed_on(tr, obstacle, rate, &pressed, error));
     if (!pressed)
       return add_impact(tr, obstacle, restitution_of(tr, obstacle), error);
-    carried_lose(tr, obstacle, RIC_SALTATION_GRAZING);
+    carried_lose(tr, obstacle, tr->flow->time, RIC_SALTATION_GRAZING);
     return index_list_add(&tr->settling, obstacle, error);
   }
-  carried_lose(tr, obstacle, RIC_SALTATION_GRAZING);
+  carried_lose(tr, obstacle, tr->flow->time, RIC_SALTATION_GRAZING);
   ric_event event = event_of(tr, RIC_EVENT_GRAZING, obstacle);
   event.gap_rate = event.gap_rate_end = rate;
   event.depth = gap_now(tr, obstacle);
@@ -308,6 +308,6 @@ ric_status contacts_begin(ric_trajectory *tr, ric_error *error) {
     carried_hold(tr, tr->held.items[i]);
   for (size_t i = 0; i < tr->departing.count; i++)
     if (tr->locator.departure[tr->departing.items[i]] == DEPARTS_SLOWLY)
-      carried_lose(tr, tr->departing.items[i], RIC_SALTATION_GRAZING);
+      carried_lose(tr, tr->departing.items[i], tr->flow->time, RIC_SALTATION_GRAZING);
   return RIC_OK;
 }

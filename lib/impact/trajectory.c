@@ -160,7 +160,7 @@ static void show_grazes(ric_trajectory *tr, double start, double length) {
     event.time = start + h->x * length;
     event.depth = h->depth;
     trajectory_show(tr, &event);
-    carried_lose(tr, h->obstacle, RIC_SALTATION_GRAZING);
+    carried_lose(tr, h->obstacle, event.time, RIC_SALTATION_GRAZING);
   }
 }
 
@@ -173,13 +173,25 @@ static void count_event_time(ric_trajectory *tr) {
   tr->window_events++;
 }
 
+/* How far a step counts: up to the first roots, or to the near miss at which tangent vectors end. */
+static double extent(ric_trajectory *tr, bool *meets) {
+  locator *l = &tr->locator;
+  double x = l->roots.count > 0 ? l->first : l->horizon;
+  *meets = l->roots.count > 0;
+  if (tr->flow->tangent.columns == 0 || l->grazes.count == 0)
+    return x;
+  *meets = false;
+  l->grazes.count = 1;
+  return l->grazes.hits[0].x;
+}
+
 /* One step of the flow, up to its first event. */
 static ric_status advance(ric_trajectory *tr, double end, ric_error *error) {
   ric_flow *f = tr->flow;
+  bool meets, moved;
   RIC_TRY(ric_flow_step(f, contacts_next_rest(tr, end), error));
   RIC_TRY(locator_scan(&tr->locator, f, tr->options.event_time_tol * (1 + fabs(f->time)), error));
-  bool meets = tr->locator.roots.count > 0, moved;
-  double x = meets ? tr->locator.first : tr->locator.horizon, start = f->time, length = f->length;
+  double x = extent(tr, &meets), start = f->time, length = f->length;
   show_pieces(tr, x);
   ric_flow_accept(f, x);
   show_grazes(tr, start, length);

@@ -36,7 +36,8 @@ typedef struct carried {
   double *restitution; /* [restitution_capacity] and theirs */
   size_t restitution_capacity;
   ric_saltation_kind kind; /* of the last contacts; not differentiable: the tangent vectors are lost */
-  size_t obstacle;         /* that has lost them */
+  size_t obstacle;         /* that has lost them, */
+  double time;             /* and when */
 } carried;
 
 struct ric_trajectory {
@@ -99,7 +100,7 @@ ric_status gap_acceleration(ric_trajectory *tr, size_t obstacle, double *acceler
 void carried_mark(ric_trajectory *tr);
 
 /** A contact has been touched so that tangent vectors have no way on. */
-void carried_lose(ric_trajectory *tr, size_t obstacle, ric_saltation_kind kind);
+void carried_lose(ric_trajectory *tr, size_t obstacle, double time, ric_saltation_kind kind);
 
 /** After the contacts have met: takes tangent vectors through the first `hits` of tr->impacts. */
 ric_status carried_meet(ric_trajectory *tr, size_t hits, ric_error *error);

@@ -3,6 +3,7 @@
 A test is a function of (program, folder) marked with @test; its name states the property. The folder is empty and its
 own. A script is called as SCRIPT RICOCHET_BINARY SOURCE_DIR [TESTS...] and ends with program.main()."""
 
+import itertools
 import os
 import re
 import resource
@@ -117,6 +118,14 @@ class Program:
         self.shared = shared  # a folder that lasts as long as the script
         self.studies = source / "data" / "studies"
         self._running = []
+        self._sessions = itertools.count()
+
+    def _session(self):
+        """A folder of its own for what Open MPI keeps of a run: runs that start together would otherwise race to make,
+        and to remove, the one that they share."""
+        folder = self.shared / f"mpi{next(self._sessions)}"
+        folder.mkdir()
+        return {"OMPI_MCA_orte_tmpdir_base": str(folder)}
 
     def words(self, words, ranks=0, mpi=()):
         line = [str(self.binary), *map(str, words)]
@@ -126,7 +135,7 @@ class Program:
         process = subprocess.Popen(
             self.words(words, ranks, mpi),
             cwd=cwd,
-            env=environment(env),
+            env=environment({**self._session(), **(env or {})}),
             stdin=subprocess.PIPE if stdin is not None else subprocess.DEVNULL,
             stdout=out,
             stderr=subprocess.PIPE,

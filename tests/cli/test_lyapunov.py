@@ -115,8 +115,10 @@ def a_motion_that_grazes_ends_with_what_was_known_by_then(ricochet, folder):
     found = read(run(ricochet, folder, text))
     assert found["words"] == ["grazing", "grazing"] and all(found["reason"])
     assert np.allclose(found["time"], 1.5 * np.pi, atol=1e-5)
-    assert np.isfinite(found["lyapunov"][0]).all() and np.isnan(found["lyapunov"][1]).all()
-    assert history(found, 0)[0].tolist() == [1, 2, 3, 4] and len(history(found, 1)[0]) == 0
+    assert np.isfinite(found["lyapunov"]).all()
+    known = [history(found, task)[0] for task in (0, 1)]
+    assert known[0][:4].tolist() == [1, 2, 3, 4]  # at the ends of intervals, and where the last factorisation was
+    assert len(known[1]) == 1 and 0 < known[1][0] < 1.5 * np.pi
     reached = found["t"] <= found["time"][:, None]
     assert np.isfinite(found["q"][reached]).all() and np.isnan(found["q"][~reached]).all()
 

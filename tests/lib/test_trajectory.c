@@ -178,6 +178,26 @@ static void long_chain_moves_like_a_short_one(void **state) {
   example_destroy(&large);
 }
 
+/* q = sin(t + phase) over a floor at -1: every touch is told, whether rounding puts it above, below or at zero. */
+static void touches_are_told_however_they_are_rounded(void **state) {
+  (void)state;
+  static const double pi = 3.14159265358979323846;
+  ric_lattice mass = ric_lattice_default(1, RIC_ENDS_FREE);
+  ric_obstacle floor = ric_obstacle_floor(0, -1);
+  ric_system *system = lattice_system(&mass, &floor, 1);
+  for (int k = 0; k < 500; k++) {
+    double phase = -1.5 + 0.006 * k, q = sin(phase), u = cos(phase), end = 6 * pi;
+    recorded r = record(system, NULL, &q, &u, end);
+    assert_int_equal(r.count, 3);
+    for (size_t i = 0; i < 3; i++) {
+      assert_int_equal(r.events[i].kind, RIC_EVENT_GRAZING);
+      assert_close(r.events[i].time, 1.5 * pi - phase + 2 * pi * (double)i, 1e-6);
+    }
+    recorded_clear(&r);
+  }
+  ric_system_destroy(&system);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(orbit_is_followed_to_rounding_through_an_impact),
@@ -187,6 +207,7 @@ int main(void) {
       cmocka_unit_test(samples_are_the_states_at_their_times),
       cmocka_unit_test(observer_can_end_a_run_and_go_on),
       cmocka_unit_test(long_chain_moves_like_a_short_one),
+      cmocka_unit_test(touches_are_told_however_they_are_rounded),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

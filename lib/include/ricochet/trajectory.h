@@ -106,8 +106,8 @@ RIC_API int ric_trajectory_rests(const ric_trajectory *trajectory, size_t obstac
 /** Tangent vectors that move along with the state from now on, between contacts as ric_flow_carry says, through impacts
  *  by their saltation (saltation.h). Contacts that persist hold them, too. A run that meets a contact through which
  * they have no way, one that grazes or impacts whose order matters, ends there with an outcome that says so, after the
- *  impact; they are lost, and a further run goes on without them. Call it between start and run, or between runs;
- *  ric_trajectory_start ends it.
+ *  impact if there is one; they are lost, and a further run goes on without them. Call it between start and run, or
+ * between runs; ric_trajectory_start ends it.
  *  @param dq, du  [n][columns], [m][columns] row-major, copied; du NULL where m = 0; columns 0: none any more
  *  @returns RIC_EINVAL for values that are not finite, or without a start; RIC_ENOMEM. */
 RIC_API ric_status ric_trajectory_carry(ric_trajectory *trajectory, size_t columns, const double *dq, const double *du,
