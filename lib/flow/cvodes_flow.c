@@ -83,7 +83,7 @@ static void transport(ric_flow *flow, double x) {
     f->trouble = cvodes_tangents_at(&f->solver, x);
     for (size_t k = 0; k < columns; k++)
       for (size_t i = 0; i < size; i++)
-        flow->tangent.q[i * columns + k] = cvodes_solver_tangent(&f->solver, k)[i];
+        flow->tangent.q[i * columns + k] = f->trouble ? NAN : cvodes_solver_tangent(&f->solver, k)[i];
     return;
   }
   for (size_t i = 0; i < size * columns; i++)

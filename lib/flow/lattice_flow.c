@@ -96,19 +96,12 @@ static void accept(ric_flow *flow, double x) {
   f->ended = 0;
 }
 
-static size_t compliant_obstacles(const ric_system *system) {
-  size_t count = 0;
-  for (size_t j = 0; j < system->obstacle_count; j++)
-    count += isfinite(system->obstacles[j].stiffness) != 0;
-  return count;
-}
-
 static ric_status carry(ric_flow *flow, ric_error *error) {
   lattice_flow *f = self(flow);
   if (f->variation || flow->tangent.columns == 0)
     return RIC_OK;
-  return lattice_variation_create(f->lattice, f->stepper.order, compliant_obstacles(flow->system) > 0, &f->variation,
-                                  error);
+  return lattice_variation_create(f->lattice, f->stepper.order, system_compliant_obstacles(flow->system) > 0,
+                                  &f->variation, error);
 }
 
 static double coordinate_at(ric_flow *flow, size_t i, double x) {
@@ -170,7 +163,7 @@ static const flow_method method = {.start = start,
 
 static ric_status allocate(lattice_flow *f, ric_error *error) {
   size_t n = f->base.system->coordinates, obstacles = f->base.system->obstacle_count;
-  size_t compliant = compliant_obstacles(f->base.system);
+  size_t compliant = system_compliant_obstacles(f->base.system);
   f->q_next = malloc(n * sizeof *f->q_next);
   f->u_next = malloc(n * sizeof *f->u_next);
   f->held = calloc(obstacles + 1, sizeof *f->held);

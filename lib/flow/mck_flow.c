@@ -219,16 +219,9 @@ static const flow_method mck_method = {.start = mck_start,
                                        .transport = mck_flow_transport,
                                        .destroy = mck_flow_destroy};
 
-static size_t obstacles_that(const ric_system *s, bool comply) {
-  size_t count = 0;
-  for (size_t k = 0; k < s->obstacle_count; k++)
-    count += comply == (isfinite(s->obstacles[k].stiffness) != 0);
-  return count;
-}
-
 static bool allocate(mck_flow *f, const mck_system *s) {
   size_t n = s->base.coordinates, levels = (size_t)f->stepper.order + 1;
-  size_t rigid = obstacles_that(&s->base, false), compliant = obstacles_that(&s->base, true);
+  size_t compliant = system_compliant_obstacles(&s->base), rigid = s->base.obstacle_count - compliant;
   f->coef = calloc(levels * n, sizeof *f->coef);
   f->acceleration = calloc(n, sizeof *f->acceleration);
   f->reaction = calloc(rigid ? levels * rigid : 1, sizeof *f->reaction);

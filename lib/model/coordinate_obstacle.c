@@ -100,6 +100,13 @@ double obstacle_restitution(const ric_system *s, size_t obstacle) {
   return s->obstacles[obstacle].restitution;
 }
 
+size_t system_compliant_obstacles(const ric_system *s) {
+  size_t count = 0;
+  for (size_t j = 0; j < s->obstacle_count; j++)
+    count += isfinite(s->obstacles[j].stiffness) != 0;
+  return count;
+}
+
 size_t system_first_obstacle(const ric_system *s, size_t coordinate) {
   size_t low = 0, high = s->obstacle_count;
   while (low < high) {

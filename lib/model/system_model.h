@@ -94,6 +94,9 @@ const char *obstacle_gap_acceleration(const ric_system *s, size_t obstacle, doub
                                       const double *q_rate, const double *u_rate, double *acceleration);
 double obstacle_restitution(const ric_system *s, size_t obstacle);
 
+/** How many obstacles are compliant. */
+size_t system_compliant_obstacles(const ric_system *s);
+
 /** First position in by_coordinate whose obstacle has a coordinate >= `coordinate`. */
 size_t system_first_obstacle(const ric_system *s, size_t coordinate);
 
