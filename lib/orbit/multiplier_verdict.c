@@ -116,6 +116,13 @@ static void look_at_trivial(ric_multipliers *m, size_t trivial) {
            distance_from_one(*z));
 }
 
+static double log_determinant(const ric_multipliers *m) {
+  double sum = 0;
+  for (size_t i = 0; i < m->count; i++)
+    sum += log(modulus(m->mu[i]));
+  return m->count == m->dimension ? sum : NAN;
+}
+
 void multipliers_judge(ric_multipliers *m, size_t trivial, const ric_multiplier_options *options) {
   ric_multiplier_options own = *options, *o = &own;
   if (trivial < 2) /* no second pair can meet the double 1 */
@@ -128,6 +135,7 @@ void multipliers_judge(ric_multipliers *m, size_t trivial, const ric_multiplier_
     m->margin = 0; /* nothing besides those at 1 */
   multipliers_sort(m);
   m->largest = modulus(m->mu[0]);
+  m->log_determinant = log_determinant(m);
 }
 
 void multipliers_judge_outside(ric_multipliers *m, size_t untold, size_t near_one, const ric_multiplier_options *o) {

@@ -44,7 +44,7 @@ void ric_multipliers_fail(ric_multipliers *m, const char *reason) {
   m->stable = RIC_STABILITY_UNKNOWN;
   snprintf(m->reason, sizeof m->reason, "%s", reason);
   m->count = m->outside = m->real_above = m->real_below = m->complex_outside = 0;
-  m->largest = m->margin = NAN;
+  m->largest = m->margin = m->log_determinant = NAN;
 }
 
 ric_multiplier_options ric_multiplier_options_default(void) {

@@ -1,5 +1,6 @@
 #include "ricochet/orbit_multipliers.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -19,6 +20,8 @@ ric_orbit_multiplier_options ric_orbit_multiplier_options_default(void) {
 static const double defect_tol = 1e-6;
 /* Closure errors above it are no orbit's; those of strongly unstable ones grow by the largest multiplier. */
 static const double closure_tol = 1e-6;
+/* Of an entry of M: a thousand times its rounding. */
+static const double determinant_tol = 1e-12;
 
 static ric_multiplier_method method_for(const ric_orbit_multiplier_options *o, size_t n) {
   if (o->method != RIC_MULTIPLIERS_AUTO)
@@ -74,6 +77,16 @@ static ric_status by_reduced(ric_orbit_solver *solver, const ric_chain *chain, c
   return RIC_OK;
 }
 
+/* The orbit is conservative: the determinant is 1, up to what rounding makes of the smallest multiplier. */
+static void check_determinant(ric_multipliers *m) {
+  char reason[sizeof m->reason];
+  double error = fabs(m->log_determinant), allowed = determinant_tol * (double)m->dimension * m->largest * m->largest;
+  if (error <= allowed)
+    return;
+  snprintf(reason, sizeof reason, "the logarithm of the determinant is %.3g, expected 0 within %.3g", error, allowed);
+  ric_multipliers_fail(m, reason);
+}
+
 /* Whether the run has followed the orbit. */
 static bool follows(const ric_monodromy *run, const ric_orbit *orbit, ric_multipliers *m) {
   char reason[sizeof m->reason];
@@ -104,6 +117,8 @@ static ric_status by_monodromy(ric_orbit_solver *solver, const ric_chain *chain,
   ric_status status = ric_orbit_monodromy(solver, chain, orbit, &options, M, &run, error);
   if (status == RIC_OK && follows(&run, orbit, m))
     status = ric_multipliers_of_matrix(M, m->dimension, 2, &o->judge, m, error);
+  if (status == RIC_OK && m->stable != RIC_STABILITY_UNKNOWN)
+    check_determinant(m);
   free(M);
   return status;
 }

@@ -51,8 +51,9 @@ typedef struct ric_multipliers {
   double largest;  /* modulus; of a stable orbit of the determinant method 1; NaN when unknown */
   size_t outside;  /* how many lie outside by more than the band, ... */
   size_t real_above, real_below, complex_outside; /* ... real > 1, real < -1, and complex (pairs count twice) */
-  double
-      margin; /* largest modulus without the ones that are 1 for any motion, minus 1; NaN when unknown or not found */
+  double margin; /* largest modulus of those that are not 1 for any motion, minus 1; NaN when unknown or not found */
+  double log_determinant; /* sum of ln |mu|, ln |det M|: that of e^2 over the impacts plus the integrated divergence;
+                             NaN unless all are known */
 } ric_multipliers;
 
 /** @returns RIC_ENOMEM; RIC_EINVAL for a dimension of 0. */
