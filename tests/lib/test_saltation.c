@@ -2,6 +2,7 @@
 #include "support.h"
 
 #include "derivative.h"
+#include "double_pendulum.h"
 #include "random_lattice.h"
 #include "recorded.h"
 
@@ -130,25 +131,15 @@ static void tangents_pass_impacts_of_coupled_masses(void **state) {
   assert_true(c.impacts > 50);
 }
 
-/* A double pendulum with unit masses and lengths before a wall that moves. The inverse of its mass matrix and the gap's
+/* A double pendulum before a wall that moves. The inverse of its mass matrix and the gap's
  * gradient depend on the angles: the impact map's derivative has parts from all of them. */
 typedef struct pendulum {
   double restitution, amplitude;
 } pendulum;
 
-static int pendulum_mass(double t, const double *q, double *M, void *user) {
-  (void)t, (void)user;
-  M[0] = 2;
-  M[1] = M[2] = cos(q[0] - q[1]);
-  M[3] = 1;
-  return 0;
-}
-
 static int pendulum_force(double t, const double *q, const double *u, double *f, void *user) {
-  (void)t, (void)user;
-  double s = sin(q[0] - q[1]);
-  f[0] = -s * u[1] * u[1] - 2 * sin(q[0]) - 0.1 * u[0];
-  f[1] = s * u[0] * u[0] - sin(q[1]);
+  double_pendulum_force(t, q, u, f, user);
+  f[0] -= 0.1 * u[0];
   return 0;
 }
 
@@ -160,25 +151,20 @@ static int pendulum_gap(double t, const double *q, size_t obstacle, double *h, v
 
 /* The same as x' = F(x, t) with an impact map. */
 static int pendulum_rate(double t, const double *x, double *rate, void *user) {
-  double f[2], c = cos(x[0] - x[1]), det = 2 - c * c;
+  double f[2];
   pendulum_force(t, x, x + 2, f, user);
   rate[0] = x[2];
   rate[1] = x[3];
-  rate[2] = (f[0] - c * f[1]) / det;
-  rate[3] = (-c * f[0] + 2 * f[1]) / det;
+  double_pendulum_solve(x, f, rate + 2);
   return 0;
 }
 
 static int pendulum_impact(double t, const double *x, size_t obstacle, double *after, void *user) {
   const pendulum *a = user;
   (void)obstacle;
-  double c = cos(x[0] - x[1]), det = 2 - c * c, g[2] = {-cos(x[0]), -cos(x[1])};
-  double w[2] = {(g[0] - c * g[1]) / det, (-c * g[0] + 2 * g[1]) / det};
-  double gap_rate = g[0] * x[2] + g[1] * x[3] + 2 * a->amplitude * cos(2 * t);
-  double p = -(1 + a->restitution) * gap_rate / (g[0] * w[0] + g[1] * w[1]); /* [FN97] (2.9) */
+  double gap_rate = -cos(x[0]) * x[2] - cos(x[1]) * x[3] + 2 * a->amplitude * cos(2 * t);
   memcpy(after, x, 4 * sizeof *x);
-  after[2] += p * w[0];
-  after[3] += p * w[1];
+  double_pendulum_hit(x, a->restitution, gap_rate, after + 2);
   return 0;
 }
 
@@ -194,7 +180,7 @@ static ric_system *pendulum_system(pendulum *a, int first_order) {
                           .speeds = 2,
                           .obstacles = 1,
                           .restitution = &a->restitution,
-                          .mass = pendulum_mass,
+                          .mass = double_pendulum_mass,
                           .force = pendulum_force,
                           .gap = pendulum_gap,
                           .user = a};

@@ -2,25 +2,10 @@
  * speeds cannot be integrated. */
 #include "support.h"
 
+#include "double_pendulum.h"
 #include "recorded.h"
 
-/* Unit masses and lengths, gravity 1, angles from the vertical; the lower bob may not pass the wall at x = 0.6. */
-static int pendulum_mass(double t, const double *q, double *M, void *user) {
-  (void)t, (void)user;
-  M[0] = 2;
-  M[1] = M[2] = cos(q[0] - q[1]);
-  M[3] = 1;
-  return 0;
-}
-
-static int pendulum_force(double t, const double *q, const double *u, double *f, void *user) {
-  (void)t, (void)user;
-  double s = sin(q[0] - q[1]);
-  f[0] = -s * u[1] * u[1] - 2 * sin(q[0]);
-  f[1] = s * u[0] * u[0] - sin(q[1]);
-  return 0;
-}
-
+/* The lower bob may not pass the wall at x = 0.6. */
 static int wall_gap(double t, const double *q, size_t obstacle, double *h, void *user) {
   (void)t, (void)obstacle, (void)user;
   *h = 0.6 - sin(q[0]) - sin(q[1]);
@@ -50,8 +35,8 @@ static ric_system *pendulum(const double *restitution, int with_gradient) {
                           .speeds = 2,
                           .obstacles = 1,
                           .restitution = restitution,
-                          .mass = pendulum_mass,
-                          .force = pendulum_force,
+                          .mass = double_pendulum_mass,
+                          .force = double_pendulum_force,
                           .gap = wall_gap,
                           .gap_gradient = with_gradient ? wall_gradient : NULL,
                           .energy = pendulum_energy};
@@ -114,12 +99,11 @@ static void pendulum_impulse_obeys_the_impact_law(void **state) {
 
 /* The same pendulum as x' = F(x) with an impact map. */
 static int pendulum_rate(double t, const double *x, double *rate, void *user) {
-  double f[2], c = cos(x[0] - x[1]), det = 2 - c * c;
-  pendulum_force(t, x, x + 2, f, user);
+  double f[2];
+  double_pendulum_force(t, x, x + 2, f, user);
   rate[0] = x[2];
   rate[1] = x[3];
-  rate[2] = (f[0] - c * f[1]) / det;
-  rate[3] = (-c * f[0] + 2 * f[1]) / det;
+  double_pendulum_solve(x, f, rate + 2);
   return 0;
 }
 
@@ -131,13 +115,8 @@ static int wall_gradient_of_state(double t, const double *x, size_t obstacle, do
 
 static int wall_impact(double t, const double *x, size_t obstacle, double *x_after, void *user) {
   (void)t, (void)obstacle;
-  double e = *(double *)user, c = cos(x[0] - x[1]), det = 2 - c * c, g[2] = {-cos(x[0]), -cos(x[1])};
-  double w[2] = {(g[0] - c * g[1]) / det, (-c * g[0] + 2 * g[1]) / det};
-  double p = -(1 + e) * (g[0] * x[2] + g[1] * x[3]) / (g[0] * w[0] + g[1] * w[1]);
-  x_after[0] = x[0];
-  x_after[1] = x[1];
-  x_after[2] = x[2] + p * w[0];
-  x_after[3] = x[3] + p * w[1];
+  memcpy(x_after, x, 4 * sizeof *x);
+  double_pendulum_hit(x, *(double *)user, -cos(x[0]) * x[2] - cos(x[1]) * x[3], x_after + 2);
   return 0;
 }
 
