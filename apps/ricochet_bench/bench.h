@@ -6,8 +6,8 @@
 
 /** What one repeat of a scenario did. */
 typedef struct work_done {
-  size_t tasks;        /* orbits */
-  size_t n;            /* particles of each */
+  size_t tasks;        /* orbits, points of a curve */
+  size_t n;            /* particles of each, unknowns */
   int failed;          /* something was not what the scenario promises */
   double seconds;      /* of the part that counts; 0: of all of it */
   const char *measure; /* name of a figure besides time, NULL: none */
@@ -23,8 +23,8 @@ typedef struct benchmark {
   work_done (*run)(size_t argument, int variant);
 } benchmark;
 
-/** Lists that end with a NULL name: orbits, trajectories, and multipliers. */
-extern const benchmark benchmarks[], trajectory_benchmarks[], multiplier_benchmarks[];
+/** Lists that end with a NULL name: orbits, trajectories, multipliers, and curves of solutions. */
+extern const benchmark benchmarks[], trajectory_benchmarks[], multiplier_benchmarks[], continuation_benchmarks[];
 
 /** Seconds on the monotonic clock. */
 double bench_seconds(void);

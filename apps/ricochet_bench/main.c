@@ -66,8 +66,9 @@ static int scaling(const benchmark *b) {
   return bench_scaling() || fflush(stdout) != 0;
 }
 
-enum { LISTS = 3 };
-static const benchmark *const lists[LISTS] = {benchmarks, trajectory_benchmarks, multiplier_benchmarks};
+enum { LISTS = 4 };
+static const benchmark *const lists[LISTS] = {benchmarks, trajectory_benchmarks, multiplier_benchmarks,
+                                              continuation_benchmarks};
 
 static void list(void) {
   for (size_t l = 0; l < LISTS; l++)

@@ -4,8 +4,9 @@
  *   | row_u  row_p |
  *
  * is regular at folds for a row along the tangent, and singular at branch points for every row. It is factorised by
- * QR with column pivoting, since the LU of GSL allocates. The determinant with the unit tangent as its row (in the norm
- * of continuation.h) depends on the point and the direction of walk alone; it follows from that with any other row. */
+ * QR with column pivoting where it is small, by LU where it is large. The determinant with the unit tangent as its row
+ * (in the norm of continuation.h) depends on the point and the direction of walk alone; it follows from that with any
+ * other row. */
 #ifndef RICOCHET_BORDERED_H
 #define RICOCHET_BORDERED_H
 
@@ -17,7 +18,7 @@
 typedef struct bordered_determinant {
   int sign; /* 0: singular, or not known */
   double log;
-  double least; /* last diagonal entry of R, in modulus: proportional to the distance from a branch point */
+  double least; /* diagonal entry of R or U in modulus: proportional to the distance from a branch point */
 } bordered_determinant;
 
 typedef struct bordered {
@@ -27,7 +28,7 @@ typedef struct bordered {
   double *residual;      /* [n + 1] F, and room for a right-hand side */
   double *J, *F_p;       /* [n][n], [n] as the problem gives them */
   double *matrix;        /* [n + 1][n + 1] factors */
-  double *tau, *scratch; /* [n + 1] */
+  double *tau, *scratch; /* [n + 1] of QR */
   size_t *permutation;
   int signum; /* of the permutation */
   bool singular;

@@ -12,7 +12,6 @@ static const double rounding = 1000;
 static ric_status correct(ric_curve *c, const double *row, double *x, double *size, ric_error *error) {
   RIC_TRY(bordered_factor(&c->linear, x, row, error));
   bordered_correction(&c->linear, c->z);
-  c->iterations++;
   for (size_t i = 0; i < c->linear.size; i++)
     x[i] += c->z[i];
   *size = curve_norm(c, c->z) / (1 + curve_norm(c, x));
@@ -21,20 +20,34 @@ static ric_status correct(ric_curve *c, const double *row, double *x, double *si
   return ric_fail(error, RIC_ENUMERIC, "a correction is not finite near p = %.9g", x[c->problem.unknowns]);
 }
 
+/* A correction that only confirms the point before it. */
+static bool confirms(const ric_curve_options *o, double size, double before) {
+  return size <= o->newton_tol || (size <= rounding * o->newton_tol && size > before / 2);
+}
+
+/* A correction that the next would only confirm, since they shrink faster and faster. Its factors are to be good for
+ * tangents as well. */
+static bool suffices(const ric_curve_options *o, double size, double before) {
+  return before < INFINITY && size <= o->locate_tol && size * size <= o->newton_tol * before;
+}
+
 ric_status corrector_run(ric_curve *c, const double *row, double *x, bool near, int *iterations, ric_error *error) {
-  double tol = c->options.newton_tol, size = INFINITY;
-  for (*iterations = 1; *iterations <= c->options.iterations; ++*iterations) {
+  double size = INFINITY;
+  for (int k = *iterations = 0; k < c->options.iterations; k++) {
     double before = size;
     RIC_TRY(correct(c, row, x, &size, error));
-    if (size <= tol || (size <= rounding * tol && size > before / 2))
+    if (confirms(&c->options, size, before))
+      return RIC_OK;
+    ++*iterations;
+    c->iterations++;
+    if (suffices(&c->options, size, before))
       return RIC_OK;
     if (near && size > before)
       return ric_fail(error, RIC_ENUMERIC, "Newton's corrections grow from %.3g to %.3g at p = %.9g", before, size,
                       x[c->problem.unknowns]);
   }
-  *iterations = c->options.iterations;
   return ric_fail(error, RIC_ENUMERIC, "no convergence at p = %.9g: the last of %d corrections is %.3g",
-                  x[c->problem.unknowns], *iterations, size);
+                  x[c->problem.unknowns], c->options.iterations, size);
 }
 
 ric_status corrector_tangent(ric_curve *c, double *t, bordered_determinant *det, ric_error *error) {

@@ -90,7 +90,7 @@ static double *place_node(const ric_curve *c, curve_node *node, double *block) {
 
 static ric_status allocate(ric_curve *c, ric_error *error) {
   size_t n = c->problem.unknowns, size = n + 1, tests = c->problem.tests;
-  size_t nodes = tests + 2 + 6, numbers = bordered_numbers(n) + 3 * size + nodes * (2 * size + tests);
+  size_t nodes = tests + 2 + 6 + CURVE_PAST, numbers = bordered_numbers(n) + 3 * size + nodes * (2 * size + tests);
   c->block = calloc(numbers, sizeof *c->block);
   c->linear.permutation = calloc(size, sizeof *c->linear.permutation);
   c->found = calloc(tests + 2, sizeof *c->found);
@@ -104,6 +104,8 @@ static ric_status allocate(ric_curve *c, ric_error *error) {
   curve_node *single[] = {&c->start, &c->from, &c->to, &c->trial, &c->low, &c->high};
   for (size_t k = 0; k < sizeof single / sizeof *single; k++)
     rest = place_node(c, single[k], rest);
+  for (size_t k = 0; k < CURVE_PAST; k++)
+    rest = place_node(c, &c->past[k], rest);
   for (size_t k = 0; k < tests + 2; k++)
     rest = place_node(c, &c->found[k], rest);
   return RIC_OK;

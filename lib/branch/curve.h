@@ -21,6 +21,8 @@ typedef struct curve_node {
   size_t which;
 } curve_node;
 
+enum { CURVE_PAST = 2 }; /* points before the present one that predictions use */
+
 struct ric_curve {
   ric_curve_problem problem;
   ric_curve_options options;
@@ -28,6 +30,8 @@ struct ric_curve {
   double *row, *bound_row; /* [n + 1] of the step, and where p is given or on the way to a branch point */
   double *z;               /* [n + 1] */
   curve_node start, from, to;
+  curve_node past[CURVE_PAST]; /* before `from`, the last first */
+  size_t pasts;                /* how many of them there are */
   curve_node trial, low, high; /* for locating */
   curve_node *found;           /* [tests + 2] special points of a step */
   gsl_root_fsolver *brent;
@@ -42,6 +46,8 @@ double curve_norm(const ric_curve *c, const double *a);
 double curve_distance(const ric_curve *c, const double *a, const double *b);
 /** The plain product of a row and a vector. */
 double curve_row_dot(const ric_curve *c, const double *row, const double *x);
+/** Progress of x over the row of the step from `from`; uses z. */
+double curve_progress(ric_curve *c, const double *x);
 /** Row with <row, x> = <t, x> in the norm of the curve. */
 void curve_tangent_row(const ric_curve *c, const double *t, double *row);
 /** Row of natural steps, (0, sign). */

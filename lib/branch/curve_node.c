@@ -31,6 +31,12 @@ double curve_row_dot(const ric_curve *c, const double *row, const double *x) {
   return sum;
 }
 
+double curve_progress(ric_curve *c, const double *x) {
+  for (size_t i = 0; i < c->linear.size; i++)
+    c->z[i] = x[i] - c->from.x[i];
+  return curve_row_dot(c, c->row, c->z);
+}
+
 void curve_tangent_row(const ric_curve *c, const double *t, double *row) {
   size_t n = c->problem.unknowns;
   for (size_t i = 0; i < n; i++)

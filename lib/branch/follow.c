@@ -7,6 +7,7 @@
 
 #include "corrector.h"
 #include "locate_special.h"
+#include "predictor.h"
 #include "step.h"
 
 /* Special points nearer to a start along a given tangent, over the first step, are the start itself: a branch point or
@@ -94,6 +95,7 @@ static ric_status begin(walk *w, double *u, double p, const double *tangent, ric
   RIC_TRY(curve_tests(c, &c->from, error));
   curve_node_copy(c, &c->start, &c->from);
   memcpy(u, c->from.x, n * sizeof *u);
+  c->pasts = 0;
   w->h = c->options.step;
   w->along = tangent != NULL;
   show(w, &c->from, 0);
@@ -117,10 +119,11 @@ static ric_status step(walk *w, bool *landed, bool *closed, bool *shortened) {
   return RIC_OK;
 }
 
-/* Half the allowed corrections leave a step as it is; two less double it, if the tangent has not turned too much. */
+/* A quarter of the allowed corrections leaves a step as it is; two less double it, if the tangent has not turned too
+ * much. Longer steps than that with more corrections each are not cheaper by the length. */
 static void choose_next(walk *w, bool shortened) {
   const ric_curve_options *o = &w->c->options;
-  double turn = step_turn(w->c), wanted = fmax(2, o->iterations / 2.0);
+  double turn = step_turn(w->c), wanted = fmax(1, o->iterations / 4.0);
   double factor = exp2((wanted - w->c->to.iterations) / 2);
   if (turn > 0)
     factor = fmin(factor, turn_wanted * o->turn / turn);
@@ -145,7 +148,7 @@ static ric_status show_special(walk *w) {
 /* One step, shown; sets the end when it is the last. */
 static ric_status advance(walk *w) {
   ric_curve *c = w->c;
-  bool landed, closed, shortened;
+  bool landed, closed, shortened, keep = !w->along; /* a given tangent may be a guess */
   c->from.sigma = 0;
   step_set_row(c);
   RIC_TRY(step(w, &landed, &closed, &shortened));
@@ -161,7 +164,7 @@ static ric_status advance(walk *w) {
   if (!w->over && (landed || closed || w->run->points >= c->options.points))
     end(w, landed ? RIC_CURVE_BOUND : closed ? RIC_CURVE_CLOSED : RIC_CURVE_POINTS, "");
   choose_next(w, shortened);
-  curve_node_copy(c, &c->from, &c->to);
+  predictor_advance(c, keep);
   return RIC_OK;
 }
 

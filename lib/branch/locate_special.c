@@ -112,6 +112,24 @@ static ric_status shorten(const search *s, bool *found) {
   return RIC_OK;
 }
 
+/* Whether Newton's method has left a point where it was, as it does where it has a hold. */
+static bool stays(const ric_curve *c, const curve_node *before, const curve_node *after) {
+  return curve_distance(c, before->x, after->x) <= c->options.locate_tol * (1 + curve_norm(c, before->x));
+}
+
+/* An end of the bracket that is still a point of the walk is corrected once more: its tangent is as good as its last
+ * correction was small, which is not enough for a zero close by. */
+static ric_status sharpen(const search *s, curve_node *end, const curve_node *walked) {
+  ric_curve *c = s->c;
+  if (end->sigma != walked->sigma)
+    return RIC_OK;
+  curve_node_copy(c, &c->trial, end);
+  ric_status status = correct(s, &c->trial);
+  if (status == RIC_OK && stays(c, end, &c->trial) && value_of(s, end) * value_of(s, &c->trial) > 0)
+    curve_node_copy(c, end, &c->trial);
+  return status == RIC_ENUMERIC ? RIC_OK : status;
+}
+
 /* The determinant with the cubic's tangent as the row; zero where the matrix is exactly singular. */
 static ric_status determinant_at(const search *s, curve_node *node) {
   ric_curve *c = s->c;
@@ -178,6 +196,8 @@ static ric_status locate(search *s, curve_node *node, bool *found) {
   curve_node_copy(c, &c->high, &c->to);
   s->status = RIC_OK;
   RIC_TRY(shorten(s, found));
+  RIC_TRY(sharpen(s, &c->low, &c->from));
+  RIC_TRY(sharpen(s, &c->high, &c->to));
   double sigma = *found ? zero_of(s) : NAN;
   *found = !isnan(sigma);
   if (s->status != RIC_OK && s->status != RIC_ENUMERIC)

@@ -5,6 +5,7 @@
 
 #include "corrector.h"
 #include "cubic.h"
+#include "predictor.h"
 
 /* More than cubic_mismatch can be, over the chord, on a curve that turns by less than 1: the corrector has found
  * another curve. */
@@ -42,13 +43,6 @@ static cubic step_cubic(const ric_curve *c) {
   return (cubic){c, c->row, &c->from, &c->to};
 }
 
-/* Progress of x over the row of the step. */
-static double progress(ric_curve *c, const double *x) {
-  for (size_t i = 0; i < c->linear.size; i++)
-    c->z[i] = x[i] - c->from.x[i];
-  return curve_row_dot(c, c->row, c->z);
-}
-
 /* Whether `to` with its tangent can be the next point. */
 static ric_status judge(const ric_curve *c, ric_error *error) {
   double turn = step_turn(c), chord = curve_distance(c, c->from.x, c->to.x);
@@ -77,12 +71,8 @@ static double bound_before(const ric_curve *c, double p) {
   return p > c->options.p_high ? c->options.p_high : c->options.p_low;
 }
 
-/* The point with the progress h on the tangent. */
 static void predict(ric_curve *c, double h) {
-  double slope = curve_row_dot(c, c->row, c->from.t);
-  for (size_t i = 0; i < c->linear.size; i++)
-    c->to.x[i] = c->from.x[i] + h / slope * c->from.t[i];
-  c->to.sigma = h;
+  c->to.sigma = predictor_point(c, h, c->to.x);
   c->to.iterations = 0;
 }
 
@@ -101,7 +91,7 @@ static ric_status correct_at_bound(ric_curve *c, double bound, double most, ric_
   curve_parameter_row(c, bound == c->options.p_high ? 1 : -1, c->bound_row);
   RIC_TRY(correct(c, c->bound_row, error));
   *p = bound;
-  c->to.sigma = progress(c, c->to.x);
+  c->to.sigma = curve_progress(c, c->to.x);
   if (!(c->to.sigma > 0 && c->to.sigma <= most))
     return ric_fail(error, RIC_ENUMERIC, "the end of the range, p = %.9g, is not met in the step", bound);
   return RIC_OK;
@@ -161,7 +151,7 @@ static ric_status meets_start(ric_curve *c, bool *meets, ric_error *error) {
 }
 
 ric_status step_close(ric_curve *c, bool *closed, ric_error *error) {
-  double sigma = progress(c, c->start.x), end = c->to.sigma;
+  double sigma = curve_progress(c, c->start.x), end = c->to.sigma;
   int iterations = c->to.iterations;
   cubic q = step_cubic(c);
   *closed = false;

@@ -2,12 +2,9 @@
 
 #include <math.h>
 #include <nvector/nvector_serial.h>
-#include <sundials/sundials_config.h>
 #include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
 
-#ifndef SUNDIALS_DOUBLE_PRECISION
-#error "SUNDIALS must be built for double precision"
-#endif
+#include "sundials_context.h"
 
 /* States below it count as of this size: a state passes through zero, and rests there, without steps that shrink. */
 static const double least_size = 1e-3;
@@ -16,28 +13,14 @@ static const double greatest_size = 1e100;
 /* Steps grow as soon as they may grow by it; CVODES would wait for 1.5, and needs half as many evaluations again. */
 static const double least_growth = 1.05;
 
-#if SUNDIALS_VERSION_MAJOR >= 7
-static int create_context(SUNContext *context) {
-  return SUNContext_Create(SUN_COMM_NULL, context) || SUNContext_ClearErrHandlers(*context);
-}
-
 static int silence(void *memory) {
+#if SUNDIALS_VERSION_MAJOR >= 7
   (void)memory;
   return 0;
-}
 #else
-static int create_context(SUNContext *context) {
-  return SUNContext_Create(NULL, context);
-}
-
-static void say_nothing(int code, const char *module, const char *function, char *message, void *user) {
-  (void)code, (void)module, (void)function, (void)message, (void)user;
-}
-
-static int silence(void *memory) {
-  return CVodeSetErrHandlerFn(memory, say_nothing, NULL);
-}
+  return CVodeSetErrHandlerFn(memory, sundials_say_nothing, NULL);
 #endif
+}
 
 static double root_mean_square(const double *y, size_t size) {
   double most = 0, sum = 0;
@@ -86,7 +69,7 @@ static int set_up(cvodes_solver *s, double longest_step) {
 }
 
 ric_status cvodes_solver_init(cvodes_solver *s, double longest_step, ric_error *error) {
-  if (create_context(&s->context) == 0) {
+  if (sundials_context_create(&s->context) == 0) {
     s->y = N_VNew_Serial((sunindextype)s->size, s->context);
     s->row = N_VNewEmpty_Serial((sunindextype)s->size, s->context);
     s->memory = CVodeCreate(CV_ADAMS, s->context);

@@ -95,7 +95,7 @@ static const char *keep_closing(const passage *p, double *step) {
     trouble = s->model->gap_rate(s, obstacle, p->t + sign * *step * j->in_time, j->point, NULL, &there);
     rise = fmax(rise, trouble ? 0 : there - here);
   }
-  if (rise > -here / 2)
+  if (here < 0 && rise > -here / 2)
     *step *= -here / 2 / rise;
   return trouble;
 }
@@ -154,19 +154,48 @@ static double *row(const tangents *d, size_t i, size_t coordinates) {
   return i < coordinates ? d->q + i * d->columns : d->u + (i - coordinates) * d->columns;
 }
 
-/* One tangent vector; the rates after the impact are subtracted later. */
-static ric_status pass_column(passage *p, const tangents *d, size_t k) {
+/* Column k becomes DG along j->line, which it and j->in_time are. */
+static ric_status map_column(passage *p, const tangents *d, size_t k) {
   tangent_jump *j = p->jump;
   size_t n = j->system->coordinates, size = n + j->system->speeds;
-  for (size_t i = 0; i < size; i++)
-    j->line[i] = row(d, i, n)[k] + j->rates_before[i] * j->shift[k];
-  j->in_time = j->shift[k];
   const char *trouble = differentiate(p);
   if (trouble)
     return blame(p->error, p->t, p->group->obstacles[0], trouble);
   for (size_t i = 0; i < size; i++)
     row(d, i, n)[k] = j->line[i];
   return RIC_OK;
+}
+
+/* One tangent vector, moved to the obstacle; the rates after the impact are subtracted later. */
+static ric_status pass_column(passage *p, const tangents *d, size_t k) {
+  tangent_jump *j = p->jump;
+  size_t n = j->system->coordinates, size = n + j->system->speeds;
+  for (size_t i = 0; i < size; i++)
+    j->line[i] = row(d, i, n)[k] + j->rates_before[i] * j->shift[k];
+  j->in_time = j->shift[k];
+  return map_column(p, d, k);
+}
+
+static void keep_state(tangent_jump *j, const double *q, const double *u) {
+  size_t n = j->system->coordinates, m = j->system->speeds;
+  memcpy(j->state, q, n * sizeof *q);
+  if (m > 0)
+    memcpy(j->state + n, u, m * sizeof *u);
+}
+
+ric_status tangent_jump_map(tangent_jump *j, double t, const jump_group *group, double *q, double *u, const tangents *d,
+                            const double *in_time, ric_error *error) {
+  passage p = {.jump = j, .t = t, .group = group, .error = error};
+  size_t n = j->system->coordinates, size = n + j->system->speeds;
+  keep_state(j, q, u);
+  for (size_t k = 0; k < d->columns; k++) {
+    for (size_t i = 0; i < size; i++)
+      j->line[i] = row(d, i, n)[k];
+    j->in_time = in_time[k];
+    RIC_TRY(map_column(&p, d, k));
+  }
+  const char *trouble = map(&p, t, q, u);
+  return trouble ? blame(error, t, group->obstacles[0], trouble) : RIC_OK;
 }
 
 ric_status tangent_jump_apply(tangent_jump *j, double t, const jump_group *group, double grazing_tol,
@@ -178,9 +207,7 @@ ric_status tangent_jump_apply(tangent_jump *j, double t, const jump_group *group
   RIC_TRY(find_shifts(&p, q, u, d, grazing_tol, kind));
   if (*kind == RIC_SALTATION_GRAZING)
     return RIC_OK;
-  memcpy(j->state, q, n * sizeof *q);
-  if (m > 0)
-    memcpy(j->state + n, u, m * sizeof *u);
+  keep_state(j, q, u);
   for (size_t k = 0; k < d->columns; k++)
     RIC_TRY(pass_column(&p, d, k));
   const char *trouble = map(&p, t, q, u); /* last: maps remember their restitution */

@@ -42,6 +42,12 @@ ric_status tangent_jump_apply(tangent_jump *jump, double t, const jump_group *gr
                               unsigned char *contact, const unsigned char *after, double *q, double *u,
                               const tangents *d, ric_saltation_kind *kind, ric_error *error);
 
+/** Moves a state and tangent vectors through the impact map alone, off the obstacle or on it, whatever the gap rate.
+ *  @param d  becomes DG d + G_t in_time
+ *  @param in_time  [columns] by how much the time of the impact moves with each of them */
+ric_status tangent_jump_map(tangent_jump *jump, double t, const jump_group *group, double *q, double *u,
+                            const tangents *d, const double *in_time, ric_error *error);
+
 /** Whether two orders of impacts have taken numbers [size] to the same place, within 1e-9 of the largest. */
 bool tangent_jumps_agree(const double *a, const double *b, size_t size);
 

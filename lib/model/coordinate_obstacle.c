@@ -102,7 +102,7 @@ double obstacle_restitution(const ric_system *s, size_t obstacle) {
 
 size_t system_compliant_obstacles(const ric_system *s) {
   size_t count = 0;
-  for (size_t j = 0; j < s->obstacle_count; j++)
+  for (size_t j = 0; s->obstacles && j < s->obstacle_count; j++)
     count += isfinite(s->obstacles[j].stiffness) != 0;
   return count;
 }

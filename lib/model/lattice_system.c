@@ -110,6 +110,15 @@ static const char *energy(const ric_system *s, double t, const double *q, const 
   return NULL;
 }
 
+static double mass(const ric_system *s, size_t coordinate) {
+  return ric_lattice_mass(lattice_system_lattice(s), coordinate);
+}
+
+static bool forced(const ric_system *s) {
+  const ric_lattice *lattice = lattice_system_lattice(s);
+  return lattice->force_cos || lattice->force_sin;
+}
+
 static void destroy(ric_system *system) {
   lattice_system *s = (lattice_system *)(void *)system;
   free(s->masses);
@@ -130,6 +139,8 @@ static const system_model model = {.rate = rate,
                                    .reaction = reaction,
                                    .energy = energy,
                                    .restitution = obstacle_restitution,
+                                   .mass = mass,
+                                   .forced = forced,
                                    .destroy = destroy};
 
 /* Copies an array that may be NULL; false when there is no memory. */

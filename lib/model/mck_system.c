@@ -175,6 +175,14 @@ static void mck_destroy(ric_system *base) {
   free(s);
 }
 
+static double mck_mass(const ric_system *s, size_t coordinate) {
+  return mck_of(s)->mass[coordinate]; /* asked of diagonal ones */
+}
+
+static bool mck_forced(const ric_system *s) {
+  return mck_of(s)->force_cos || mck_of(s)->force_sin;
+}
+
 static const system_model mck_model = {.rate = mck_rate,
                                        .tangent = mck_tangent,
                                        .gap = obstacle_gap,
@@ -185,6 +193,8 @@ static const system_model mck_model = {.rate = mck_rate,
                                        .reaction = mck_reaction,
                                        .energy = mck_energy,
                                        .restitution = obstacle_restitution,
+                                       .mass = mck_mass,
+                                       .forced = mck_forced,
                                        .destroy = mck_destroy};
 
 ric_status ric_system_create_mck(const ric_mck *mck, const ric_obstacle *obstacles, size_t count, ric_system **system,

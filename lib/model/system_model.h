@@ -57,6 +57,10 @@ typedef struct system_model {
                           const double *u, double *lambda);
   const char *(*energy)(const ric_system *s, double t, const double *q, const double *u, double *energy);
   double (*restitution)(const ric_system *s, size_t obstacle);
+  /** Mass of a coordinate of an uncoupled system; NULL for user systems. */
+  double (*mass)(const ric_system *s, size_t coordinate);
+  /** Whether its forces depend on time; NULL: not known. */
+  bool (*forced)(const ric_system *s);
   /** Frees what the model owns and the struct itself; obstacles are freed before. */
   void (*destroy)(ric_system *s);
 } system_model;

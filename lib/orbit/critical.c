@@ -102,7 +102,8 @@ static ric_status take_census(family *f, double parameter, census *c) {
   if (!c->known)
     return RIC_OK;
   RIC_TRY(reduced_compute(&f->solver->reduced, &f->chain, &f->solver->kicks, &f->orbit, f->error));
-  sort_alpha(c, f->solver->reduced.alpha, f->chain.particles - 1, rounding * fmax(1, f->solver->reduced.largest));
+  const even_spectrum *spectrum = &f->solver->reduced.spectrum;
+  sort_alpha(c, spectrum->alpha, spectrum->count, rounding * fmax(1, spectrum->largest));
   return RIC_OK;
 }
 

@@ -7,7 +7,6 @@
 #include <gsl/gsl_errno.h>
 
 #include "determinant.h"
-#include "multiplier_pair.h"
 #include "multiplier_verdict.h"
 #include "ricochet/monodromy.h"
 #include "solver.h"
@@ -16,8 +15,6 @@ ric_orbit_multiplier_options ric_orbit_multiplier_options_default(void) {
   return (ric_orbit_multiplier_options){.method = RIC_MULTIPLIERS_AUTO, .judge = ric_multiplier_options_default()};
 }
 
-/* Rows of l W - l above it (over the largest entry of W) do not come from rounding. */
-static const double defect_tol = 1e-6;
 /* Closure errors above it are no orbit's; those of strongly unstable ones grow by the largest multiplier. */
 static const double closure_tol = 1e-6;
 /* Of an entry of M: a thousand times its rounding. */
@@ -63,17 +60,8 @@ static bool has_derivative(const ric_orbit *orbit) {
 
 static ric_status by_reduced(ric_orbit_solver *solver, const ric_chain *chain, const ric_orbit *orbit,
                              const ric_multiplier_options *o, ric_multipliers *m, ric_error *error) {
-  reduced *r = &solver->reduced;
-  RIC_TRY(reduced_compute(r, chain, &solver->kicks, orbit, error));
-  if (!(r->defect <= defect_tol)) {
-    ric_multipliers_fail(m, "no multiplier at 1: the state does not belong to an orbit of this chain");
-    return RIC_OK;
-  }
-  for (size_t i = 0; i + 1 < chain->particles; i++)
-    multiplier_pair(r->alpha[i], m->mu + 2 * i);
-  m->mu[m->dimension - 2] = m->mu[m->dimension - 1] = (ric_complex){1, 0};
-  m->count = m->dimension;
-  multipliers_judge(m, 2, o);
+  RIC_TRY(reduced_compute(&solver->reduced, chain, &solver->kicks, orbit, error));
+  even_spectrum_multipliers(&solver->reduced.spectrum, o, m);
   return RIC_OK;
 }
 

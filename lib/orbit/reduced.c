@@ -1,45 +1,29 @@
 #include "reduced.h"
 
-#include <math.h>
 #include <stdlib.h>
-
-#include <gsl/gsl_errno.h>
-#include <gsl/gsl_linalg.h>
 
 void reduced_clear(reduced *r) {
   flow_kernels_clear(&r->kernels);
-  if (r->block)
-    gsl_matrix_free(r->block);
-  if (r->left)
-    gsl_vector_free(r->left);
-  if (r->values)
-    gsl_vector_complex_free(r->values);
-  gsl_eigen_nonsymm_free(r->work);
+  even_spectrum_clear(&r->spectrum);
   free(r->rows);
   free(r->kick_of);
-  free(r->alpha);
   *r = (reduced){0};
 }
 
 static ric_status prepare(reduced *r, size_t n, ric_error *error) {
-  size_t values = n > 1 ? n - 1 : 1;
   if (r->particles == n)
     return RIC_OK;
   reduced_clear(r);
-  r->block = gsl_matrix_alloc(n, n);
-  r->left = gsl_vector_alloc(n);
-  r->values = gsl_vector_complex_alloc(values);
-  r->work = gsl_eigen_nonsymm_alloc(values);
   r->rows = malloc(2 * n * sizeof *r->rows);
   r->kick_of = malloc(n * sizeof *r->kick_of);
-  r->alpha = malloc(values * sizeof *r->alpha);
-  if (r->block && r->left && r->values && r->work && r->rows && r->kick_of && r->alpha) {
+  ric_status status = r->rows && r->kick_of
+                          ? even_spectrum_reserve(&r->spectrum, n, error)
+                          : ric_fail(error, RIC_ENOMEM, "no memory for the reduced matrix of %zu particles", n);
+  if (status == RIC_OK)
     r->particles = n;
-    gsl_eigen_nonsymm_params(0, 1, r->work); /* balanced: displacements and speeds have different units */
-    return RIC_OK;
-  }
-  reduced_clear(r);
-  return ric_fail(error, RIC_ENOMEM, "no memory for the reduced matrix of %zu particles", n);
+  else
+    reduced_clear(r);
+  return status;
 }
 
 static void find_kicks(reduced *r, const kick_list *kicks) {
@@ -64,7 +48,8 @@ static double row_entry(const reduced *r, const flow_kernel *f, const ric_chain 
 static void free_flow(reduced *r, const ric_chain *chain) {
   for (size_t i = 0; i < r->particles; i++)
     for (size_t j = 0; j < r->particles; j++)
-      r->block->data[i * r->block->tda + j] = row_entry(r, &r->kernels.full, chain, i, r->kick_of[j] != NULL, j);
+      r->spectrum.block->data[i * r->spectrum.block->tda + j] =
+          row_entry(r, &r->kernels.full, chain, i, r->kick_of[j] != NULL, j);
 }
 
 /* An impact at T/2 adds F (S - 1) F, of rank two: S - 1 = -2 on (q_k, v_k), and s from q_k to v_k. */
@@ -81,7 +66,7 @@ static void add_impact(reduced *r, const ric_chain *chain, const kick *k) {
   for (size_t i = 0; i < n; i++) {
     double from_displacement = row_entry(r, half, chain, i, false, k->particle);
     double from_speed = row_entry(r, half, chain, i, true, k->particle);
-    double *row = r->block->data + i * r->block->tda;
+    double *row = r->spectrum.block->data + i * r->spectrum.block->tda;
     for (size_t j = 0; j < n; j++)
       row[j] += from_displacement * to_displacement[j] + from_speed * to_speed[j];
   }
@@ -91,33 +76,7 @@ static void add_impact(reduced *r, const ric_chain *chain, const kick *k) {
 static void energy_gradient(reduced *r, const ric_chain *chain, const ric_orbit *orbit) {
   ric_chain_acceleration(chain, orbit->q, r->rows);
   for (size_t i = 0; i < r->particles; i++)
-    r->left->data[i * r->left->stride] = r->kick_of[i] ? orbit->v[i] : -r->rows[i];
-}
-
-/* H W H with the reflection H that takes l to the first coordinate: its first row is (1, 0, ..., 0) up to rounding. */
-static void deflate(reduced *r) {
-  r->largest = fmax(fabs(gsl_matrix_max(r->block)), fabs(gsl_matrix_min(r->block)));
-  double tau = gsl_linalg_householder_transform(r->left);
-  gsl_linalg_householder_hm(tau, r->left, r->block);
-  gsl_linalg_householder_mh(tau, r->left, r->block);
-  r->defect = 0;
-  for (size_t j = 0; j < r->particles; j++)
-    r->defect = fmax(r->defect, fabs(gsl_matrix_get(r->block, 0, j) - (j == 0 ? 1 : 0)) / fmax(r->largest, 1));
-}
-
-static ric_status eigenvalues(reduced *r, ric_error *error) {
-  size_t size = r->particles - 1;
-  if (size == 0)
-    return RIC_OK;
-  gsl_matrix_view rest = gsl_matrix_submatrix(r->block, 1, 1, size, size);
-  int code = gsl_eigen_nonsymm(&rest.matrix, r->values, r->work);
-  if (code != GSL_SUCCESS)
-    return ric_fail(error, RIC_ENUMERIC, "eigenvalues of the reduced matrix: %s", gsl_strerror(code));
-  for (size_t i = 0; i < size; i++) {
-    gsl_complex value = gsl_vector_complex_get(r->values, i);
-    r->alpha[i] = (ric_complex){GSL_REAL(value), GSL_IMAG(value)};
-  }
-  return RIC_OK;
+    r->spectrum.left->data[i * r->spectrum.left->stride] = r->kick_of[i] ? orbit->v[i] : -r->rows[i];
 }
 
 ric_status reduced_compute(reduced *r, const ric_chain *chain, const kick_list *kicks, const ric_orbit *orbit,
@@ -130,6 +89,5 @@ ric_status reduced_compute(reduced *r, const ric_chain *chain, const kick_list *
     if (kicks->kicks[i].at_half)
       add_impact(r, chain, &kicks->kicks[i]);
   energy_gradient(r, chain, orbit);
-  deflate(r);
-  return eigenvalues(r, error);
+  return even_spectrum_find(&r->spectrum, true, error);
 }

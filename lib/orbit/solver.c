@@ -115,7 +115,11 @@ static void unfold(const unit_cell *cell, const ric_pattern *pattern, const boun
   }
   for (size_t r = 0; r < orbit->impacts; r++) {
     size_t k = ric_pattern_impact(pattern, r);
-    orbit->impulse[r] = ric_pattern_role(pattern, k) == RIC_ROLE_START ? 2 * orbit->v[k] : -2 * orbit->v_half[k];
+    bool at_start = ric_pattern_role(pattern, k) == RIC_ROLE_START;
+    orbit->impulse[r] = at_start ? 2 * orbit->v[k] : -2 * orbit->v_half[k];
+    orbit->gap_rate[r] = -orbit->impulse[r] / 2;
+    orbit->impact_time[r] = at_start ? 0 : orbit->period / 2;
+    orbit->impact_obstacle[r] = k;
   }
 }
 

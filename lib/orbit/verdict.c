@@ -208,8 +208,8 @@ ric_status verdict_find(motion *m, const unit_cell *cell, const ric_chain *chain
 
 void verdict_without_state(ric_orbit *orbit, ric_outcome outcome) {
   orbit->outcome = outcome;
-  for (size_t i = 0; i < 4 * orbit->particles + orbit->impacts; i++)
-    orbit->q[i] = NAN; /* the one block behind all arrays */
+  for (size_t i = 0; i < 2 * (orbit->particles + orbit->speeds) + 3 * orbit->impacts; i++)
+    orbit->q[i] = NAN; /* the one block behind all arrays of numbers */
   orbit->energy = orbit->residual = orbit->clearance = orbit->clearance_time = NAN;
   orbit->clearance_particle = -1;
 }

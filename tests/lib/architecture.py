@@ -7,13 +7,14 @@ import pathlib
 import re
 import sys
 
-ROOMS = ["model", "flow", "impact", "orbit", "branch", "grazing", "attractor"]
+ROOMS = ["model", "flow", "impact", "orbit", "branch", "family", "grazing", "attractor"]
 PUBLIC = {  # public headers by room
     "model": {"chain", "resonance", "obstacle", "lattice", "mck", "user_system", "system"},
     "flow": {"polynomial", "segment", "flow"},
     "impact": {"event", "trajectory", "saltation"},
-    "orbit": {"pattern", "orbit", "verify", "monodromy", "multipliers", "orbit_multipliers"},
+    "orbit": {"pattern", "orbit", "verify", "monodromy", "multipliers", "orbit_multipliers", "shooting"},
     "branch": {"continuation"},
+    "family": {"family"},
     "attractor": {"lyapunov"},
 }
 BASE = {"status", "export", "version"}

@@ -66,6 +66,70 @@ void crossing_tangent(double p, double u_0, double rate, double t[4]) {
     t[i] /= length;
 }
 
+/* v - 2 w <w, v> / <w, w> with w_i = 1 + i mod 3, of a column of a matrix. */
+static void reflect(size_t n, double *column, size_t stride) {
+  double product = 0, square = 0;
+  for (size_t i = 0; i < n; i++) {
+    double w = 1 + (double)(i % 3);
+    product += w * column[i * stride];
+    square += w * w;
+  }
+  for (size_t i = 0; i < n; i++)
+    column[i * stride] -= 2 * (1 + (double)(i % 3)) * product / square;
+}
+
+RESIDUAL(wide_residual) {
+  const wide_user *wide = user;
+  size_t n = wide->unknowns;
+  (void)error;
+  double a = u[0] - 0.4 * sin(p), q = p - 0.3, by_q = wide->is_fork ? a : -a;
+  memset(J, 0, n * n * sizeof *J);
+  F[0] = wide->is_fork ? a * (q - a * a) : a * (a - q);
+  J[0] = wide->is_fork ? q - 3 * a * a : 2 * a - q;
+  F_p[0] = -0.4 * cos(p) * J[0] + by_q;
+  for (size_t i = 1; i < n; i++) {
+    F[i] = u[i] - u[0] * cos((double)i) - sin(p) / (double)(i + 1);
+    J[i * n] = -cos((double)i);
+    J[i * n + i] = 1;
+    F_p[i] = -cos(p) / (double)(i + 1);
+  }
+  reflect(n, F, 1);
+  reflect(n, F_p, 1);
+  for (size_t j = 0; j < n; j++)
+    reflect(n, J + j, n);
+  return RIC_OK;
+}
+
+ric_curve_problem wide_crossing(const wide_user *user) {
+  return (ric_curve_problem){.unknowns = user->unknowns, .residual = wide_residual, .user = (void *)(uintptr_t)user};
+}
+
+void wide_point(const wide_user *user, double p, double u_0, double *u) {
+  u[0] = u_0;
+  for (size_t i = 1; i < user->unknowns; i++)
+    u[i] = u_0 * cos((double)i) + sin(p) / (double)(i + 1);
+}
+
+RESIDUAL(duffing_residual) {
+  const duffing *d = user;
+  (void)error;
+  double a = u[0], b = u[1], stiffness = 1 - p * p + 0.75 * (a * a + b * b), drag = 2 * d->damping * p;
+  F[0] = stiffness * a + drag * b - d->force;
+  F[1] = stiffness * b - drag * a;
+  J[0] = stiffness + 1.5 * a * a;
+  J[1] = 1.5 * a * b + drag;
+  J[2] = 1.5 * a * b - drag;
+  J[3] = stiffness + 1.5 * b * b;
+  F_p[0] = -2 * p * a + 2 * d->damping * b;
+  F_p[1] = -2 * p * b - 2 * d->damping * a;
+  return RIC_OK;
+}
+
+double duffing_force(const duffing *d, const double u[2], double p) {
+  double amplitude = hypot(u[0], u[1]);
+  return amplitude * hypot(1 - p * p + 0.75 * amplitude * amplitude, 2 * d->damping * p);
+}
+
 RESIDUAL(bratu_residual) {
   size_t n = *(const size_t *)user;
   double h2 = 1 / ((double)(n + 1) * (double)(n + 1));
@@ -87,6 +151,7 @@ RESIDUAL(bratu_residual) {
 const ric_curve_problem circle = {.unknowns = 1, .residual = circle_residual};
 const ric_curve_problem cubic_curve = {.unknowns = 1, .residual = cubic_residual};
 const ric_curve_problem pitchfork = {.unknowns = 1, .residual = pitchfork_residual};
+const ric_curve_problem duffing_response = {.unknowns = 2, .residual = duffing_residual};
 const ric_curve_problem crossing = {.unknowns = 3, .residual = crossing_residual};
 
 ric_curve_problem bratu(size_t unknowns) {

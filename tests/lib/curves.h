@@ -19,6 +19,25 @@ extern const ric_curve_problem crossing;
 void crossing_point(double p, double u_0, double u[3]);
 void crossing_tangent(double p, double u_0, double rate, double t[4]);
 
+/** Many unknowns with the crossing's first equation for u_0, and u_i = u_0 cos(i) + sin(p) / (i + 1); all equations
+ * mixed by a reflection, so that the Jacobian is dense. The user is a wide_user. */
+typedef struct wide_user {
+  bool is_fork;
+  size_t unknowns;
+} wide_user;
+ric_curve_problem wide_crossing(const wide_user *user);
+/** The point of a branch with a given u_0. @param u  [unknowns] set */
+void wide_point(const wide_user *user, double p, double u_0, double *u);
+
+/** Amplitudes u = (a, b) of x = a cos pt + b sin pt in x'' + 2 z x' + x + x^3 = f cos pt by harmonic balance; the user
+ * is a duffing. Folds at both ends of where three amplitudes exist. */
+typedef struct duffing {
+  double damping, force;
+} duffing;
+extern const ric_curve_problem duffing_response;
+/** |force| that belongs to the amplitudes at p, which is that of the problem on its curve. */
+double duffing_force(const duffing *d, const double u[2], double p);
+
 /** Bratu's problem u'' + p exp(u) = 0 on [0, 1], u = 0 at the ends, by second differences at `unknowns` points. */
 ric_curve_problem bratu(size_t unknowns);
 

@@ -107,6 +107,84 @@ static void a_pitchfork_branches_at_right_angles(void **state) {
   free(w);
 }
 
+/* The tangent of another branch, scaled to its part in p, at a branch point seen by the walk. */
+typedef struct seen_branch {
+  ric_curve *curve;
+  double rate; /* of u_0 */
+} seen_branch;
+
+static int switch_there(const ric_curve_point *point, void *user) {
+  seen_branch *seen = user;
+  double t[400], other[400];
+  if (point->kind != RIC_CURVE_BRANCH_POINT)
+    return 0;
+  assert_close(point->p, 0.3, 1e-9);
+  memcpy(t, point->t_u, 399 * sizeof *t);
+  t[399] = point->t_p;
+  assert_int_equal(ric_curve_switch(seen->curve, point->u, point->p, t, other, NULL), RIC_OK);
+  seen->rate = other[0] / other[399];
+  return 1;
+}
+
+static void branch_points_of_many_unknowns_are_found_and_left(void **state) {
+  (void)state;
+  const wide_user user = {.unknowns = 399};
+  const ric_curve_problem problem = wide_crossing(&user);
+  double u[399], expected = 0.4 * cos(0.3) + 1;
+  seen_branch seen = {.curve = made(&problem, NULL)};
+  ric_curve_run run;
+  wide_point(&user, 0.15, 0.4 * sin(0.15), u);
+  assert_int_equal(ric_curve_follow(seen.curve, u, 0.15, NULL, switch_there, &seen, &run, NULL), RIC_OK);
+  assert_int_equal(run.end, RIC_CURVE_ENDED);
+  assert_close(seen.rate, expected, 1e-6);
+  ric_curve_destroy(&seen.curve);
+}
+
+/* Both factorisations, by QR and by LU, and sizes on both sides of where one is taken for the other. */
+static void branch_points_are_found_whatever_the_size(void **state) {
+  (void)state;
+  static const size_t sizes[] = {2, 12, 30, 31, 45, 70};
+  double worst = 0;
+  for (size_t k = 0; k < sizeof sizes / sizeof *sizes; k++)
+    for (int fork = 0; fork < 2; fork++)
+      for (int start = 0; start < 6; start++) {
+        const wide_user user = {.is_fork = fork, .unknowns = sizes[k]};
+        const ric_curve_problem problem = wide_crossing(&user);
+        ric_curve_options options = ric_curve_options_default();
+        double u[70], p = -0.2 + 0.017 * start;
+        options.p_high = 0.6;
+        options.step = 0.01 + 0.01 * start;
+        options.natural = start % 2;
+        wide_point(&user, p, 0.4 * sin(p), u);
+        walked *w = walk(&problem, &options, u, p, NULL);
+        assert_int_equal(w->run.special, 1);
+        assert_int_equal(w->run.missed, 0);
+        assert_int_equal(w->run.end, RIC_CURVE_BOUND);
+        const shown_point *at = special(w, RIC_CURVE_BRANCH_POINT, 0);
+        worst = fmax(worst, fmax(fabs(at->p - 0.3), fabs(at->u - 0.4 * sin(0.3))));
+        free(w);
+      }
+  print_message("branch points off by %.3g\n", worst);
+  assert_true(worst < 2e-10);
+}
+
+/* Where a point of the walk is just before or behind the branch point, it ends the bracket from which that is located.
+ */
+static void tangents_at_branch_points_are_good_wherever_steps_end(void **state) {
+  (void)state;
+  double worst = 0, expected[4];
+  crossing_tangent(0.3, 0.4 * sin(0.3), 0.4 * cos(0.3), expected);
+  for (int k = 0; k < 400; k++) {
+    const bool fork = false;
+    walked *w = walk_crossing(&fork, -0.5 + 0.0013 * k, 0.01 + 0.0002 * k, false);
+    for (int i = 0; i < 4; i++)
+      worst = fmax(worst, fabs(special(w, RIC_CURVE_BRANCH_POINT, 0)->t[i] - expected[i]));
+    free(w);
+  }
+  print_message("tangents off by %.3g\n", worst);
+  assert_true(worst < 1e-10);
+}
+
 /* The bent branch passes a fold and a branch point at one place, where Newton's method has no hold. */
 static void a_fold_and_a_branch_point_at_one_place_are_both_told(void **state) {
   (void)state;
@@ -339,6 +417,9 @@ int main(void) {
       cmocka_unit_test(branch_points_exactly_on_a_step_are_found_once),
       cmocka_unit_test(a_transcritical_branch_point_gives_the_other_tangent),
       cmocka_unit_test(a_pitchfork_branches_at_right_angles),
+      cmocka_unit_test(branch_points_of_many_unknowns_are_found_and_left),
+      cmocka_unit_test(branch_points_are_found_whatever_the_size),
+      cmocka_unit_test(tangents_at_branch_points_are_good_wherever_steps_end),
       cmocka_unit_test(a_fold_and_a_branch_point_at_one_place_are_both_told),
       cmocka_unit_test(switching_elsewhere_is_refused),
       cmocka_unit_test(branches_that_touch_are_no_simple_branch_point),

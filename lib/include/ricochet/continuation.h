@@ -1,13 +1,15 @@
 /* Continuation: the curve of solutions of F(u, p) = 0 through a known one.
  *
- * n equations for n unknowns u and a parameter p have curves of solutions. A step goes along the tangent and comes back
- * to the curve by Newton's method, either at a given parameter (natural) or in the hyperplane at the arclength of the
- * step (pseudo-arclength), which goes around folds:
+ * n equations for n unknowns u and a parameter p have curves of solutions. A step goes to where the last points and
+ * tangents lead and comes back to the curve by Newton's method, either at a given parameter (natural) or in the
+ * hyperplane through the prediction that the last tangent t is normal to (pseudo-arclength), which goes around folds:
  *
  *   F(u, p) = 0,   <t_u, u - u_0> / n + t_p (p - p_0) = ds,
  *
- * with the tangent t of unit length in the norm |(u, p)|^2 = |u|^2 / n + p^2. Steps grow where Newton's method is quick
- * and the tangent turns slowly, and shrink where not. Linear systems are bordered and solved by GSL (pivoted QR).
+ * with t of unit length in the norm |(u, p)|^2 = |u|^2 / n + p^2. Steps grow where Newton's method is quick and the
+ * tangent turns slowly, and shrink where not. A step takes two evaluations where the prediction is good: one there, one
+ * at the corrected point, which confirms it and gives its tangent. Linear systems are bordered and solved by GSL, by
+ * pivoted QR below 31 unknowns, else by LU.
  *
  * Test functions are followed along the curve; where one changes sign the point is located on the curve to
  * `locate_tol`. Two are built in: folds, where the tangent's part in p changes sign, and branch points, where the
@@ -44,9 +46,10 @@ typedef struct ric_curve_options {
   double step_most;     /* default 0.1 */
   double direction;     /* sign of the first step in p; default 1 */
   size_t points;        /* most steps, default 1000 */
-  double newton_tol;    /* 1e-12: corrections below it, relative to 1 + |(u, p)|, have converged; so have those below
-                         * 1000 times it that no longer shrink: they are rounding of F */
-  int iterations;       /* most corrections of a step, default 8 */
+  double newton_tol;    /* 1e-12: a correction below it, relative to 1 + |(u, p)|, confirms the point; so does one below
+                         * 1000 times it that no longer shrinks: it is rounding of F. The last may be larger, up to
+                         * locate_tol, where corrections shrink so fast that the next is below it */
+  int iterations;       /* most corrections of a step, with the one that confirms it; default 8 */
   double turn;          /* most that the tangent may turn in a step, radians; at most 1, default 0.3 */
   double locate_tol;    /* 1e-10: special points, in arclength, relative to 1 + |p| */
   ric_poll poll;
@@ -75,12 +78,12 @@ typedef struct ric_curve_point {
   size_t which; /* test function */
   double p;
   const double *u;     /* [n] */
-  const double *t_u;   /* [n] tangent, */
+  const double *t_u;   /* [n] tangent, with t_p behind it, */
   double t_p;          /* in the direction of the walk */
   double arclength;    /* from the start: of cubics through the points along their tangents */
   const double *tests; /* [tests] values of the problem's test functions */
-  int iterations;      /* corrections by Newton's method; 0 where none was made, at branch points */
-  double step;         /* that led here, of special points: the part of it up to them; 0 at the start */
+  int iterations;      /* corrections that were needed, without one that only confirms; 0 at branch points */
+  double step;         /* ds that led here, of special points: the part of it up to them; 0 at the start */
 } ric_curve_point;
 
 #define RIC_CURVE_END_LIST(X)                                                                                          \
@@ -105,11 +108,11 @@ typedef struct ric_curve_run {
   size_t points;                            /* accepted steps */
   size_t special;                           /* special points located */
   size_t missed;                            /* sign changes where no zero was found: jumps, poles, no values */
-  unsigned long long iterations, jacobians; /* in all: Newton's corrections, residuals with their Jacobians */
+  unsigned long long iterations, jacobians; /* in all: corrections needed, residuals with their Jacobians */
 } ric_curve_run;
 
-/** Workspace of a problem. What follows allocates nothing, but for switching. The point callback may call
- *  ric_curve_switch and ric_curve_solve of the curve that is being followed. */
+/** Workspace of a problem. What follows allocates nothing, but for switching, and for the LU of GSL. The point callback
+ * may call ric_curve_switch and ric_curve_solve of the curve that is being followed. */
 typedef struct ric_curve ric_curve;
 
 /** @param problem  copied; its user is borrowed
@@ -133,7 +136,8 @@ RIC_API ric_status ric_curve_follow(ric_curve *curve, double *u, double p, const
                                     ric_curve_run *run, ric_error *error);
 
 /** Newton's method at a fixed parameter: the solution near u [n], which is set to it.
- *  @param iterations  set to the number of corrections; may be NULL
+ *  @param iterations  set to the number of corrections that were needed, without one that only confirms: 0 at a
+ *                     solution, 1 where F is linear in u; may be NULL
  *  @returns RIC_ENUMERIC when it does not converge, with the last correction. */
 RIC_API ric_status ric_curve_solve(ric_curve *curve, double *u, double p, int *iterations, ric_error *error);
 

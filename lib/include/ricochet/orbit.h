@@ -1,8 +1,8 @@
 /* Periodic orbits of the chain with a given impact pattern.
  *
- * One orbit struct, however the orbit was found: state at t = 0+ and at t = T/2-, impulses, energy, residual, and an
- * outcome with its reason. The orbits here are conservative (restitution 1) with at most one impact per particle and
- * period, at t = 0 or t = T/2, and even about both times.
+ * One orbit struct, however the orbit was found (shooting.h finds those of any system): state at t = 0+ and at t =
+ * T/2-, impacts, energy, residual, and an outcome with its reason. The orbits here are conservative (restitution 1)
+ * with at most one impact per particle and period, at t = 0 or t = T/2, and even about both times.
  *
  * Two solvers fill it. `impulse` superposes the responses of the modes to periodic unit impulses,
  *
@@ -31,6 +31,7 @@
 #include "chain.h"
 #include "pattern.h"
 #include "resonance.h"
+#include "system.h"
 
 #define RIC_OUTCOME_LIST(X)                                                                                            \
   X(RIC_ADMISSIBLE, "admissible")                                                                                      \
@@ -74,17 +75,21 @@ typedef struct ric_orbit {
   ric_outcome outcome;
   char reason[RIC_REASON_BYTES]; /* why, for people; "" when admissible */
   double period;
-  size_t particles;        /* n */
+  size_t particles;        /* n, coordinates of a system */
+  size_t speeds;           /* n of chains */
   size_t impacts;          /* m */
-  double *q, *v;           /* [n] state at t = 0+ */
-  double *q_half, *v_half; /* [n] state at t = (T/2)-, before the impacts there */
-  double *impulse;         /* [m] velocity jumps, in the order of the pattern */
+  double *q, *v;           /* [n], [speeds] state at t = 0+ */
+  double *q_half, *v_half; /* [n], [speeds] state at t = (T/2)-, before the impacts there */
+  double *impulse;         /* [m] in the order of the pattern; of masses 1 velocity jumps; NaN for impact maps */
+  double *impact_time;     /* [m] in [0, T) */
+  double *gap_rate;        /* [m] before the impact */
+  size_t *impact_obstacle; /* [m] which obstacle of the system; of chains, which particle */
   double energy;           /* total, constant along the orbit */
   double residual;         /* largest violation of the contact conditions, and of the motion joining both states
                               (there, velocities over the largest frequency) */
   double clearance;      /* smallest gap of the free particles that have a floor, over the whole period; NaN if none */
   double clearance_time; /* when, in [0, T/2]; NaN */
-  long long clearance_particle; /* which; -1 */
+  long long clearance_particle; /* which (of user systems: which obstacle); -1 */
   double condition;  /* impulse: largest free response over the response at the contacts; dense: of its matrix */
   long long mode;    /* the resonant mode of `grazing` and `resonant`; -1 */
   unsigned harmonic; /* l of that resonance; 0 */
@@ -92,6 +97,8 @@ typedef struct ric_orbit {
 
 /** Allocates the arrays. @returns RIC_ENOMEM, RIC_EINVAL for a size of 0. */
 RIC_API ric_status ric_orbit_init(ric_orbit *orbit, size_t particles, size_t impacts, ric_error *error);
+/** The same for motions of any system, with any number of impacts, also 0. */
+RIC_API ric_status ric_orbit_init_for(ric_orbit *orbit, const ric_system *system, size_t impacts, ric_error *error);
 RIC_API void ric_orbit_clear(ric_orbit *orbit);
 
 /** Makes an orbit `failed` with this reason: NaN in every array, no clearance. For problems that never reach a solver.

@@ -1,0 +1,203 @@
+#include "ricochet/family.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "family_parts.h"
+
+/* Step of differences in a parameter, relative to 1 + its size. They only direct Newton's method and predictions: what
+ * is found satisfies F, whose zeros know nothing of it. */
+static const double parameter_step = 1e-5;
+
+const char *ric_family_kind_name(ric_family_kind kind) {
+  static const char *const names[] = {
+#define X(name, text) text,
+      RIC_FAMILY_LIST(X)
+#undef X
+  };
+  return (unsigned)kind < RIC_FAMILY_KINDS ? names[kind] : "unknown kind";
+}
+
+ric_family_options ric_family_options_default(void) {
+  ric_family_options options = {
+      .curve = ric_curve_options_default(), .multipliers = true, .judge = ric_multiplier_options_default()};
+  options.curve.newton_tol = 1e-11;
+  return options;
+}
+
+void family_forget(ric_family *f) {
+  f->at[0] = f->at[1] = f->looked_at = NAN;
+}
+
+/* --- parameters --------------------------------------------------------------------------------------------------- */
+
+ric_status family_set(ric_family *f, double first, double second, ric_error *error) {
+  const ric_family_problem *p = &f->problem;
+  if (f->at[0] == first && f->at[1] == second)
+    return RIC_OK;
+  family_forget(f);
+  const double both[2] = {first, second};
+  f->given = p->set ? p->given : first;
+  if (p->set)
+    RIC_TRY(p->set(p->system, both, &f->given, p->user, error));
+  if (p->set && p->periods > 1 && !p->motion.energy_given)
+    f->given *= (double)p->periods;
+  f->at[0] = first;
+  f->at[1] = second;
+  return RIC_OK;
+}
+
+static ric_status residual_beside(ric_family *f, const double *at, size_t by, double shift, const double *z, double *F,
+                                  ric_error *error) {
+  double beside[2] = {at[0], at[1]};
+  beside[by] += shift;
+  RIC_TRY(family_set(f, beside[0], beside[1], error));
+  return ric_shooting_residual(f->shooting, z, f->given, F, NULL, NULL, error);
+}
+
+/* Derivative of F by a parameter: central differences, or one-sided ones of second order at the end of its range. */
+static ric_status difference(ric_family *f, const double *z, size_t by, const double *F, double *F_p,
+                             ric_error *error) {
+  const double at[2] = {f->at[0], f->at[1]}, h = parameter_step * (1 + fabs(at[by]));
+  bool below = residual_beside(f, at, by, -h, z, f->below, error) == RIC_OK;
+  bool above = residual_beside(f, at, by, h, z, f->above, error) == RIC_OK;
+  double side = above ? 1 : -1;
+  ric_status status = below || above ? RIC_OK : RIC_ENUMERIC;
+  if (below && above)
+    for (size_t i = 0; i < f->unknowns; i++)
+      F_p[i] = (f->above[i] - f->below[i]) / (2 * h);
+  else if (status == RIC_OK) {
+    double *near = above ? f->above : f->below, *far = above ? f->below : f->above;
+    status = residual_beside(f, at, by, 2 * side * h, z, far, error);
+    for (size_t i = 0; status == RIC_OK && i < f->unknowns; i++)
+      F_p[i] = side * (4 * near[i] - far[i] - 3 * F[i]) / (2 * h);
+  }
+  RIC_TRY(family_set(f, at[0], at[1], error));
+  return status;
+}
+
+ric_status family_residual(ric_family *f, const double *z, size_t by, double *F, double *J, double *F_p,
+                           ric_error *error) {
+  bool exact = !f->problem.set;
+  RIC_TRY(ric_shooting_residual(f->shooting, z, f->given, F, J, exact ? F_p : NULL, error));
+  return exact ? RIC_OK : difference(f, z, by, F, F_p, error);
+}
+
+static ric_status residual(const double *u, double p, double *F, double *J, double *F_p, void *user, ric_error *error) {
+  ric_family *f = user;
+  RIC_TRY(family_set(f, p, f->problem.second, error));
+  return family_residual(f, u, 0, F, J, F_p, error);
+}
+
+static ric_status test(const double *u, double p, const double *t_u, double t_p, double *values, void *user,
+                       ric_error *error) {
+  ric_family *f = user;
+  (void)t_u, (void)t_p;
+  RIC_TRY(family_set(f, p, f->problem.second, error));
+  RIC_TRY(family_look(f, u, error));
+  family_tests(f, u, values);
+  return RIC_OK;
+}
+
+/* --- life --------------------------------------------------------------------------------------------------------- */
+
+static ric_status copy_hits(ric_family *f, ric_error *error) {
+  ric_shooting_problem *m = &f->problem.motion;
+  size_t total = m->start_count + m->half_count + m->count;
+  f->hits = malloc((total + 1) * sizeof *f->hits);
+  if (!f->hits)
+    return ric_fail(error, RIC_ENOMEM, "no memory for %zu impacts", total);
+  const size_t *from[3] = {m->at_start, m->at_half, m->sequence}, count[3] = {m->start_count, m->half_count, m->count};
+  size_t *to[3] = {f->hits, f->hits + m->start_count, f->hits + m->start_count + m->half_count};
+  for (int k = 0; k < 3; k++)
+    if (count[k] > 0)
+      memcpy(to[k], from[k], count[k] * sizeof *f->hits);
+  m->at_start = to[0];
+  m->at_half = to[1];
+  m->sequence = to[2];
+  return RIC_OK;
+}
+
+static ric_status check(const ric_family_problem *p, const ric_family_options *o, ric_error *error) {
+  size_t numbers = ric_system_coordinates(p->system) + ric_system_speeds(p->system);
+  if (p->parameters < 1 || p->parameters > 2 || (p->parameters == 2 && !p->set))
+    return ric_fail(error, RIC_EINVAL, "parameters = %zu, expected 1, or 2 with a function that sets them",
+                    p->parameters);
+  if (o->multipliers && numbers > RIC_FAMILY_NUMBERS)
+    return ric_fail(error, RIC_ELIMIT, "multipliers of a state of %zu numbers, expected at most %d", numbers,
+                    RIC_FAMILY_NUMBERS);
+  return RIC_OK;
+}
+
+static ric_status allocate(ric_family *f, ric_error *error) {
+  size_t n = f->unknowns;
+  f->block = calloc(3 * n, sizeof *f->block);
+  if (!f->block)
+    return ric_fail(error, RIC_ENOMEM, "no memory for a family of %zu unknowns", n);
+  f->below = f->block;
+  f->above = f->block + n;
+  f->looked_z = f->block + 2 * n;
+  RIC_TRY(ric_orbit_init_for(&f->orbit, f->problem.system, ric_shooting_impacts(f->shooting), error));
+  if (!f->options.multipliers)
+    return RIC_OK;
+  return ric_multipliers_init(&f->multipliers, f->shooting->arcs.size, error);
+}
+
+static ric_status build(ric_family *f, ric_error *error) {
+  const ric_shooting_problem *m = &f->problem.motion;
+  RIC_TRY(copy_hits(f, error));
+  RIC_TRY(ric_shooting_create(f->problem.system, m, &f->shooting, error));
+  f->unknowns = ric_shooting_unknowns(f->shooting);
+  f->impacts = m->start_count + m->half_count + m->count;
+  f->tests = TEST_IMPACTS + f->impacts + (m->count > 0 ? f->shooting->arcs.arc_count : 0);
+  RIC_TRY(allocate(f, error));
+  const ric_curve_problem curve = {
+      .unknowns = f->unknowns, .residual = residual, .tests = f->tests, .test = test, .user = f};
+  return ric_curve_create(&curve, &f->options.curve, &f->curve, error);
+}
+
+ric_status ric_family_create(const ric_family_problem *problem, const ric_family_options *options, ric_family **family,
+                             ric_error *error) {
+  ric_family_options o = options ? *options : ric_family_options_default();
+  *family = NULL;
+  RIC_TRY(check(problem, &o, error));
+  ric_family *f = calloc(1, sizeof *f);
+  if (!f)
+    return ric_fail(error, RIC_ENOMEM, "no memory for a family");
+  f->problem = *problem;
+  f->options = o;
+  family_forget(f);
+  ric_status status = build(f, error);
+  if (status == RIC_OK)
+    *family = f;
+  else
+    ric_family_destroy(&f);
+  return status;
+}
+
+void ric_family_destroy(ric_family **family) {
+  if (!family || !*family)
+    return;
+  ric_family *f = *family;
+  ric_curve_destroy(&f->curve);
+  ric_shooting_destroy(&f->shooting);
+  ric_orbit_clear(&f->orbit);
+  ric_multipliers_clear(&f->multipliers);
+  free(f->hits);
+  free(f->block);
+  free(f);
+  *family = NULL;
+}
+
+ric_shooting *ric_family_shooting(ric_family *family) {
+  return family->shooting;
+}
+
+ric_status ric_family_start(ric_family *f, double parameter, const double *q, const double *u, const double *times,
+                            double period, double *z, int *iterations, ric_error *error) {
+  family_forget(f);
+  RIC_TRY(family_set(f, parameter, f->problem.second, error));
+  RIC_TRY(ric_shooting_guess(f->shooting, q, u, times, period, z, error));
+  return ric_shooting_solve(f->shooting, z, f->given, 0, iterations, error);
+}

@@ -1,0 +1,235 @@
+/* Going over to the family with a contact more, or less. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <gsl/gsl_errno.h>
+
+#include "family_parts.h"
+
+/* How far along the tangent the other family is looked at, for the side on which it exists. */
+static const double feeler = 1e-4;
+/* Times this near to a turning point of an even motion, over the period, are there. */
+static const double at_turning = 1e-7;
+
+/* A crossing being made: impacts of the new family, and where its motion begins. */
+typedef struct crossing {
+  ric_family *from;
+  const ric_family_point *point;
+  ric_family_problem problem;
+  size_t *start, *half, *sequence; /* of the new family */
+  double *times;                   /* of its sequence */
+  double *x;                       /* [n + m] first state */
+  double begin, period;            /* when that is */
+  ric_family_junction *junction;
+  ric_error *error;
+} crossing;
+
+static ric_status reserve(crossing *c) {
+  const ric_shooting_problem *m = &c->from->problem.motion;
+  size_t most = m->start_count + m->half_count + m->count + 1, size = c->from->shooting->arcs.size;
+  c->start = calloc(3 * most, sizeof *c->start);
+  c->times = calloc(most + size, sizeof *c->times);
+  if (!c->start || !c->times)
+    return ric_fail(c->error, RIC_ENOMEM, "no memory for %zu impacts", most);
+  c->half = c->start + most;
+  c->sequence = c->half + most;
+  c->x = c->times + most;
+  return RIC_OK;
+}
+
+static void copy_impacts(crossing *c) {
+  const ric_shooting_problem *m = &c->from->problem.motion;
+  const arc_plan *plan = &c->from->shooting->arcs;
+  memcpy(c->start, m->at_start, m->start_count * sizeof *c->start);
+  memcpy(c->half, m->at_half, m->half_count * sizeof *c->half);
+  for (size_t k = 0; k < m->count; k++) {
+    c->sequence[k] = m->sequence[k];
+    c->times[k] = arcs_time(plan->impacts[k], c->point->z, c->period);
+  }
+  c->problem.motion.at_start = c->start;
+  c->problem.motion.at_half = c->half;
+  c->problem.motion.sequence = c->sequence;
+}
+
+static bool is_even(const crossing *c) {
+  return c->from->problem.motion.kind == RIC_MOTION_EVEN;
+}
+
+/* Puts an impact into the sequence, in order of time. */
+static void insert(crossing *c, size_t obstacle, double time) {
+  size_t *count = &c->problem.motion.count, k = *count;
+  double first = *count > 0 ? c->times[0] : 0;
+  if (!is_even(c))
+    time = first + fmod(fmod(time - first, c->period) + c->period, c->period);
+  for (; k > 0 && c->times[k - 1] > time; k--) {
+    c->times[k] = c->times[k - 1];
+    c->sequence[k] = c->sequence[k - 1];
+  }
+  c->times[k] = time;
+  c->sequence[k] = obstacle;
+  ++*count;
+}
+
+static void add_contact(crossing *c) {
+  ric_shooting_problem *m = &c->problem.motion;
+  double time = c->point->time;
+  if (is_even(c) && time > c->period / 2)
+    time = c->period - time;
+  if (is_even(c) && time < at_turning * c->period)
+    c->start[m->start_count++] = c->point->obstacle;
+  else if (is_even(c) && c->period / 2 - time < at_turning * c->period)
+    c->half[m->half_count++] = c->point->obstacle;
+  else
+    insert(c, c->point->obstacle, time);
+}
+
+static bool take_out(size_t *list, size_t *count, size_t obstacle) {
+  for (size_t k = 0; k < *count; k++)
+    if (list[k] == obstacle) {
+      memmove(list + k, list + k + 1, (*count - k - 1) * sizeof *list);
+      --*count;
+      return true;
+    }
+  return false;
+}
+
+static void remove_contact(crossing *c) {
+  ric_shooting_problem *m = &c->problem.motion;
+  double time = c->point->time, nearest = INFINITY;
+  size_t which = 0;
+  bool at_start = is_even(c) && time < at_turning * c->period;
+  bool at_half = is_even(c) && fabs(time - c->period / 2) < at_turning * c->period;
+  if (at_start && take_out(c->start, &m->start_count, c->point->obstacle))
+    return;
+  if (at_half && take_out(c->half, &m->half_count, c->point->obstacle))
+    return;
+  for (size_t k = 0; k < m->count; k++) {
+    double apart = fabs(remainder(c->times[k] - time, c->period));
+    if (c->sequence[k] == c->point->obstacle && apart < nearest) {
+      nearest = apart;
+      which = k;
+    }
+  }
+  memmove(c->sequence + which, c->sequence + which + 1, (m->count - which - 1) * sizeof *c->sequence);
+  memmove(c->times + which, c->times + which + 1, (m->count - which - 1) * sizeof *c->times);
+  m->count--;
+}
+
+/* --- the motion at the crossing ----------------------------------------------------------------------------------- */
+
+/* State at a time of the motion that is left, after an impact there; the touch itself leaves it alone. */
+static ric_status state_at(crossing *c, double time, double *x) {
+  ric_shooting *s = c->from->shooting;
+  const arc_plan *plan = &s->arcs;
+  const double *z = c->point->z;
+  double begin = piece_begin(plan->pieces, z, c->period);
+  while (time < begin - at_turning * c->period)
+    time += c->period;
+  for (size_t k = 0; k < plan->count; k++) {
+    piece_run run = shooting_begin(s, k, z, c->period, false);
+    if (time >= run.end - at_turning * c->period && k + 1 < plan->count)
+      continue;
+    RIC_TRY(arc_runner_move(&s->runner, run.begin, fmax(time, run.begin), s->x, 0, NULL, NULL, c->error));
+    memcpy(x, s->x, plan->size * sizeof *x);
+    break;
+  }
+  return RIC_OK;
+}
+
+/* The first state of the new family, and when it is. */
+static ric_status find_start(crossing *c) {
+  const ric_shooting_problem *m = &c->problem.motion;
+  size_t size = c->from->shooting->arcs.size;
+  c->begin = !is_even(c) && m->count > 0 ? c->times[0] : 0;
+  if (is_even(c)) { /* the same motion: only the names of its numbers change */
+    (void)shooting_begin(c->from->shooting, 0, c->point->z, c->period, false);
+    memcpy(c->x, c->from->shooting->x, size * sizeof *c->x);
+    return RIC_OK;
+  }
+  return state_at(c, c->begin, c->x);
+}
+
+/* How much a family near the crossing is one: the smaller of what its gaps and its impacts leave. */
+static ric_status soundness(ric_family *f, const double *z, double parameter, double second, double *value,
+                            ric_error *error) {
+  RIC_TRY(family_set(f, parameter, second, error));
+  RIC_TRY(family_look(f, z, error));
+  const shooting_gaps *g = f->shooting->gaps;
+  *value = fmin(g->free.value, g->own.value);
+  for (size_t k = 0; k < f->impacts; k++)
+    *value = fmin(*value, -f->orbit.gap_rate[k]);
+  return RIC_OK;
+}
+
+/* Which way along a tangent [n + 1] a family becomes sound: its sign, 0 where it does not tell. */
+static ric_status find_side(ric_family *f, const double *z, const double *t, double parameter, double second,
+                            double *beside, int *sign, ric_error *error) {
+  double value[2];
+  size_t n = f->unknowns;
+  for (int k = 0; k < 2; k++) {
+    double step = k ? feeler : -feeler;
+    for (size_t i = 0; i < n; i++)
+      beside[i] = z[i] + step * t[i];
+    RIC_TRY(soundness(f, beside, parameter + step * t[n], second, &value[k], error));
+  }
+  *sign = value[1] > value[0] ? 1 : value[1] < value[0] ? -1 : 0;
+  return RIC_OK;
+}
+
+static int sign_of(double x) {
+  return (x > 0) - (x < 0);
+}
+
+static ric_status find_sides(crossing *c) {
+  ric_family_junction *j = c->junction;
+  ric_family *f = j->family;
+  size_t n = f->unknowns;
+  double p = c->point->parameter, second = c->problem.second, *beside = j->z + n + 1;
+  int sign;
+  RIC_TRY(family_null_vectors(f, j->z, 1, j->tangent, c->error));
+  RIC_TRY(find_side(f, j->z, j->tangent, p, second, beside, &sign, c->error));
+  for (size_t i = 0; i <= n && sign < 0; i++)
+    j->tangent[i] = -j->tangent[i];
+  j->parameter = p;
+  j->side = fabs(j->tangent[n]) > 1e-12 ? sign_of(j->tangent[n]) : 0;
+  double *kept = malloc(c->from->unknowns * sizeof *kept);
+  if (!kept)
+    return ric_fail(c->error, RIC_ENOMEM, "no memory for %zu unknowns", c->from->unknowns);
+  ric_status status = find_side(c->from, c->point->z, c->point->tangent, p, second, kept, &sign, c->error);
+  free(kept);
+  j->other_side = sign * sign_of(c->point->tangent[c->from->unknowns]);
+  return status;
+}
+
+ric_status ric_family_cross(ric_family *family, const ric_family_point *point, ric_family_junction *junction,
+                            ric_error *error) {
+  crossing c = {.from = family, .point = point, .problem = family->problem, .junction = junction, .error = error};
+  *junction = (ric_family_junction){0};
+  family_forget(family);
+  if (point->kind != RIC_FAMILY_GRAZING && point->kind != RIC_FAMILY_IMPACT_LOST)
+    return ric_fail(error, RIC_EINVAL, "point = %s, expected grazing or impact_lost",
+                    ric_family_kind_name(point->kind));
+  c.period = point->orbit->period;
+  ric_status status = reserve(&c);
+  gsl_error_handler_t *handler = gsl_set_error_handler_off();
+  if (status == RIC_OK) {
+    copy_impacts(&c);
+    if (point->kind == RIC_FAMILY_GRAZING)
+      add_contact(&c);
+    else
+      remove_contact(&c);
+    status = find_start(&c);
+  }
+  if (status == RIC_OK)
+    status = family_branch(&c.problem, family, point, c.x, c.times, c.period, junction, error);
+  if (status == RIC_OK)
+    status = find_sides(&c);
+  gsl_set_error_handler(handler);
+  family_forget(family);
+  if (status != RIC_OK)
+    ric_family_junction_clear(junction);
+  free(c.start);
+  free(c.times);
+  return status;
+}

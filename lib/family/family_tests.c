@@ -1,0 +1,235 @@
+/* Test functions of a family, and what their zeros are. */
+#include <complex.h>
+#include <math.h>
+#include <string.h>
+
+#include "family_parts.h"
+
+/* Imaginary parts below it, relative to 1 + the modulus, are rounding: of eigenvalues that symmetry makes coincide. */
+static const double rounding = 1e-6;
+
+/* --- the motion --------------------------------------------------------------------------------------------------- */
+
+ric_status family_look(ric_family *f, const double *z, ric_error *error) {
+  if (f->looked_at == f->at[0] && memcmp(f->looked_z, z, f->unknowns * sizeof *z) == 0)
+    return RIC_OK;
+  f->looked_at = NAN;
+  RIC_TRY(ric_shooting_orbit(f->shooting, z, f->given, &f->orbit, error));
+  if (f->options.multipliers)
+    RIC_TRY(ric_shooting_multipliers(f->shooting, z, f->given, &f->options.judge, &f->multipliers, error));
+  memcpy(f->looked_z, z, f->unknowns * sizeof *z);
+  f->looked_at = f->at[0];
+  return RIC_OK;
+}
+
+static bool has_pairs(const ric_family *f) {
+  return f->problem.motion.kind == RIC_MOTION_EVEN || f->problem.motion.kind == RIC_MOTION_CONSERVATIVE;
+}
+
+static bool knows_multipliers(const ric_family *f) {
+  return f->options.multipliers && f->multipliers.stable != RIC_STABILITY_UNKNOWN;
+}
+
+/* alpha = (mu + 1/mu) / 2 of a pair. */
+static double complex alpha_of(const ric_family *f, size_t k) {
+  if (f->problem.motion.kind == RIC_MOTION_EVEN) {
+    ric_complex a = f->shooting->spectrum->even.alpha[k];
+    return CMPLX(a.re, a.im);
+  }
+  double complex mu = CMPLX(f->multipliers.mu[k].re, f->multipliers.mu[k].im);
+  return (mu + 1 / mu) / 2;
+}
+
+static size_t alpha_count(const ric_family *f) {
+  return f->problem.motion.kind == RIC_MOTION_EVEN ? f->shooting->spectrum->even.count : f->multipliers.count;
+}
+
+/* Smallest distance of two different ones, squared, or minus the largest imaginary part, squared: the discriminant of
+ * the two that meet, linear where they do. */
+static double collision(const ric_family *f) {
+  double nearest = INFINITY, across = 0;
+  for (size_t i = 0; i < alpha_count(f); i++) {
+    double complex a = alpha_of(f, i);
+    if (fabs(cimag(a)) > rounding * (1 + cabs(a)))
+      across = fmax(across, cimag(a) * cimag(a));
+    for (size_t j = 0; j < i; j++) {
+      double apart = cabs(a - alpha_of(f, j));
+      if (apart > rounding * (1 + cabs(a)))
+        nearest = fmin(nearest, apart * apart);
+    }
+  }
+  return across > 0 ? -across : isfinite(nearest) ? nearest : NAN;
+}
+
+/* Largest modulus of complex multipliers, minus 1. */
+static double torus(const ric_family *f) {
+  double largest = NAN;
+  for (size_t i = 0; i < f->multipliers.count; i++) {
+    ric_complex mu = f->multipliers.mu[i];
+    double modulus = hypot(mu.re, mu.im);
+    if (fabs(mu.im) > rounding * (1 + modulus) && !(modulus - 1 <= largest))
+      largest = modulus - 1;
+  }
+  return largest;
+}
+
+/* Product of alpha - c, each over its size. */
+static double passage(const ric_family *f, double c) {
+  double complex product = 1;
+  for (size_t i = 0; i < alpha_count(f); i++) {
+    double complex a = alpha_of(f, i);
+    product *= (a - c) / (1 + cabs(a));
+  }
+  return creal(product);
+}
+
+static void tests_of_multipliers(ric_family *f, double *values) {
+  for (int k = TEST_MINUS_ONE; k <= TEST_FOURTH; k++)
+    values[k] = NAN;
+  if (!knows_multipliers(f))
+    return;
+  shooting_spectrum_tests(f->shooting, &values[TEST_MINUS_ONE], &values[TEST_BREAKING]);
+  values[TEST_TORUS] = has_pairs(f) ? collision(f) : torus(f);
+  if (f->problem.motion.kind != RIC_MOTION_EVEN)
+    return;
+  values[TEST_THIRD] = passage(f, -0.5);
+  values[TEST_FOURTH] = passage(f, 0);
+}
+
+static double or_none(double value) {
+  return isfinite(value) ? value : NAN;
+}
+
+/* How long an arc lasts. */
+static double duration(const ric_family *f, const double *z, size_t arc) {
+  const arc_plan *plan = &f->shooting->arcs;
+  const arc_piece *p = &plan->pieces[arc * (plan->count / plan->arc_count)];
+  double period = arcs_period(plan, z, f->given);
+  return arcs_time(p->end, z, period) - arcs_time(p->begin, z, period);
+}
+
+void family_tests(ric_family *f, const double *z, double *values) {
+  tests_of_multipliers(f, values);
+  values[TEST_FREE_GAP] = or_none(f->shooting->gaps->free.value);
+  values[TEST_OWN_GAP] = or_none(f->shooting->gaps->own.value);
+  for (size_t k = 0; k < f->impacts; k++)
+    values[TEST_IMPACTS + k] = f->orbit.gap_rate[k];
+  size_t first = TEST_IMPACTS + f->impacts;
+  for (size_t k = first; k < f->tests; k++)
+    values[k] = duration(f, z, k - first);
+}
+
+/* --- what zeros are ----------------------------------------------------------------------------------------------- */
+
+/* The piece that begins with an impact of the sequence. */
+static const arc_piece *piece_after(const arc_plan *plan, size_t index) {
+  size_t cuts = plan->count / plan->arc_count;
+  size_t arc = plan->kind == RIC_MOTION_EVEN ? index + 1 : index;
+  return &plan->pieces[arc * cuts];
+}
+
+/* Impacts of a sequence are recorded at the ends of the arcs: of motions that are not even, the second one first. */
+static size_t sequence_index(const arc_plan *plan, size_t which) {
+  size_t k = which - plan->start_count - plan->half_count;
+  return plan->kind == RIC_MOTION_EVEN ? k : (k + 1) % plan->sequence_count;
+}
+
+const double *family_state_after(const ric_family *f, const double *z, size_t which) {
+  const arc_plan *plan = &f->shooting->arcs;
+  const ric_shooting_problem *m = &f->problem.motion;
+  if (which < m->start_count)
+    return f->orbit.q; /* q and v follow each other */
+  if (which < m->start_count + m->count && plan->kind == RIC_MOTION_EVEN)
+    return z + piece_after(plan, which - m->start_count)->state;
+  if (plan->kind == RIC_MOTION_EVEN)
+    return f->orbit.q_half;
+  return z + piece_after(plan, sequence_index(plan, which))->state;
+}
+
+/* At a gap rate of zero: whether the gap has its minimum there. */
+static bool is_touch(const ric_family *f, const double *z, size_t which) {
+  const ric_system *s = f->problem.system;
+  const double *x = family_state_after(f, z, which), t = f->orbit.impact_time[which];
+  double *rates = f->shooting->rates, acceleration;
+  size_t n = s->coordinates, obstacle = f->orbit.impact_obstacle[which];
+  if (ric_system_rate(s, t, x, x + n, rates, rates + n, NULL) != RIC_OK)
+    return true;
+  if (s->model->gap_acceleration(s, obstacle, t, x, x + n, rates, rates + n, &acceleration))
+    return true;
+  return acceleration >= 0;
+}
+
+static void name_touch(const ric_family *f, const gap_found *gap, ric_family_point *point) {
+  point->kind = RIC_FAMILY_GRAZING;
+  point->obstacle = gap->obstacle;
+  point->time = fmod(gap->time, f->orbit.period);
+  if (point->time < 0)
+    point->time += f->orbit.period;
+}
+
+/* Of the two alpha that meet, whether they leave the circle. */
+static bool meets_on_circle(const ric_family *f) {
+  double nearest = INFINITY, place = NAN;
+  for (size_t i = 0; i < alpha_count(f); i++)
+    for (size_t j = 0; j < i; j++) {
+      double complex a = alpha_of(f, i), b = alpha_of(f, j);
+      double apart = cabs(a - b);
+      bool symmetric = apart <= 1e-12 * (1 + cabs(a));
+      if (!symmetric && apart < nearest) {
+        nearest = apart;
+        place = creal(a);
+      }
+    }
+  return fabs(place) < 1;
+}
+
+static void name_impact(const ric_family *f, const double *z, size_t which, ric_family_point *point) {
+  point->kind = is_touch(f, z, which) ? RIC_FAMILY_IMPACT_LOST : RIC_FAMILY_IMPULSE_SIGN;
+  point->obstacle = f->orbit.impact_obstacle[which];
+  point->time = f->orbit.impact_time[which];
+}
+
+static void name_order(const ric_family *f, const double *z, size_t arc, ric_family_point *point) {
+  const arc_plan *plan = &f->shooting->arcs;
+  const arc_piece *p = &plan->pieces[arc * (plan->count / plan->arc_count)];
+  size_t next = plan->kind == RIC_MOTION_EVEN ? arc : (arc + 1) % plan->sequence_count;
+  point->kind = RIC_FAMILY_ORDER;
+  point->time = arcs_time(p->begin, z, arcs_period(plan, z, f->given));
+  point->obstacle = plan->sequence[next < plan->sequence_count ? next : plan->sequence_count - 1];
+}
+
+void family_name_zero(ric_family *f, const double *z, size_t test, ric_family_point *point) {
+  if (test >= TEST_IMPACTS + f->impacts) {
+    name_order(f, z, test - TEST_IMPACTS - f->impacts, point);
+    return;
+  }
+  if (test >= TEST_IMPACTS) {
+    name_impact(f, z, test - TEST_IMPACTS, point);
+    return;
+  }
+  switch ((family_test)test) {
+  case TEST_MINUS_ONE:
+  case TEST_MINUS_ONE_TOO:
+    point->kind = RIC_FAMILY_PERIOD_DOUBLING;
+    return;
+  case TEST_BREAKING:
+    point->kind = RIC_FAMILY_SYMMETRY_BREAKING;
+    return;
+  case TEST_TORUS:
+    point->kind = !has_pairs(f) || meets_on_circle(f) ? RIC_FAMILY_TORUS : RIC_FAMILY_REGULAR;
+    return;
+  case TEST_THIRD:
+  case TEST_FOURTH:
+    point->kind = RIC_FAMILY_RESONANCE;
+    point->order = test == TEST_THIRD ? 3 : 4;
+    return;
+  case TEST_FREE_GAP:
+    name_touch(f, &f->shooting->gaps->free, point);
+    return;
+  case TEST_OWN_GAP:
+    name_touch(f, &f->shooting->gaps->own, point);
+    return;
+  case TEST_IMPACTS:
+    break;
+  }
+}

@@ -1,0 +1,223 @@
+/* Curves of special points in two parameters.
+ *
+ * Unknowns are z and the first parameter, equations F = 0 and psi = 0, where psi is what vanishes at the special point.
+ * Its derivatives are central differences: they direct Newton's method, and the zeros of psi know nothing of them. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <gsl/gsl_errno.h>
+#include <gsl/gsl_linalg.h>
+
+#include "family_parts.h"
+
+/* Step of differences of psi, relative to 1 + the size of what moves. */
+static const double psi_step = 1e-5;
+
+typedef struct tracer {
+  ric_family *f;
+  ric_family_kind kind;
+  size_t which;        /* test function; of folds none */
+  double unit;         /* psi is measured in it */
+  double *z, *J, *F_p; /* [n], [n][n], [n] */
+  double *F;           /* [n] */
+  gsl_permutation *order;
+  int (*seen)(const ric_family_curve_point *point, void *user);
+  void *user;
+  ric_status status;
+  ric_error *error;
+} tracer;
+
+/* --- what vanishes ------------------------------------------------------------------------------------------------ */
+
+static ric_status determinant(tracer *t, const double *z, double *value, ric_error *error) {
+  size_t n = t->f->unknowns;
+  int sign;
+  RIC_TRY(ric_shooting_residual(t->f->shooting, z, t->f->given, t->F, t->J, NULL, error));
+  gsl_matrix_view J = gsl_matrix_view_array(t->J, n, n);
+  gsl_linalg_LU_decomp(&J.matrix, t->order, &sign);
+  *value = gsl_linalg_LU_sgndet(&J.matrix, sign) * exp(gsl_linalg_LU_lndet(&J.matrix));
+  return RIC_OK;
+}
+
+static ric_status psi(tracer *t, const double *z, double first, double second, double *value, ric_error *error) {
+  ric_family *f = t->f;
+  double both[2], breaking;
+  RIC_TRY(family_set(f, first, second, error));
+  if (t->kind == RIC_FAMILY_FOLD) {
+    RIC_TRY(determinant(t, z, value, error));
+  } else if (t->kind == RIC_FAMILY_PERIOD_DOUBLING) {
+    RIC_TRY(shooting_matrix(f->shooting, z, f->given, error));
+    shooting_spectrum_tests(f->shooting, both, &breaking);
+    *value = both[t->which];
+  } else {
+    RIC_TRY(ric_shooting_orbit(f->shooting, z, f->given, &f->orbit, error));
+    const shooting_gaps *g = f->shooting->gaps;
+    *value = t->which == TEST_FREE_GAP  ? g->free.value
+             : t->which == TEST_OWN_GAP ? g->own.value
+                                        : f->orbit.gap_rate[t->which - TEST_IMPACTS];
+  }
+  *value /= t->unit;
+  return isfinite(*value) ? RIC_OK : ric_fail(error, RIC_ENUMERIC, "what vanishes at the special point has no value");
+}
+
+/* Derivatives [n + 2] of psi: by z, by both parameters. */
+static ric_status gradient(tracer *t, const double *z, double first, double second, double *slopes, ric_error *error) {
+  size_t n = t->f->unknowns;
+  double at[2] = {first, second}, value[2];
+  for (size_t i = 0; i < n + 2; i++) {
+    double *moved = i < n ? &t->z[i] : &at[i - n], h;
+    memcpy(t->z, z, n * sizeof *z);
+    const double kept = *moved;
+    h = psi_step * (1 + fabs(kept));
+    for (int k = 0; k < 2; k++) {
+      *moved = kept + (k ? h : -h);
+      RIC_TRY(psi(t, t->z, at[0], at[1], &value[k], error));
+    }
+    *moved = kept;
+    slopes[i] = (value[1] - value[0]) / (2 * h);
+  }
+  return RIC_OK;
+}
+
+/* --- the extended equations --------------------------------------------------------------------------------------- */
+
+static ric_status residual(const double *u, double p, double *F, double *J, double *F_p, void *user, ric_error *error) {
+  tracer *t = user;
+  ric_family *f = t->f;
+  size_t n = f->unknowns, size = n + 1;
+  double first = u[n];
+  RIC_TRY(family_set(f, first, p, error));
+  RIC_TRY(family_residual(f, u, 0, F, t->J, t->F_p, error));
+  for (size_t i = 0; i < n; i++) {
+    memcpy(J + i * size, t->J + i * n, n * sizeof *J);
+    J[i * size + n] = t->F_p[i];
+  }
+  RIC_TRY(family_residual(f, u, 1, F, t->J, F_p, error));
+  RIC_TRY(gradient(t, u, first, p, J + n * size, error));
+  return psi(t, u, first, p, &F[n], error);
+}
+
+static int show(const ric_curve_point *c, void *user) {
+  tracer *t = user;
+  ric_family *f = t->f;
+  size_t n = f->unknowns;
+  if (c->kind != RIC_CURVE_REGULAR && c->kind != RIC_CURVE_FOLD)
+    return 0;
+  t->status = family_set(f, c->u[n], c->p, t->error);
+  if (t->status == RIC_OK)
+    t->status = ric_shooting_orbit(f->shooting, c->u, f->given, &f->orbit, t->error);
+  if (t->status != RIC_OK)
+    return 1;
+  const ric_family_curve_point point = {.parameter = c->u[n],
+                                        .second = c->p,
+                                        .z = c->u,
+                                        .given = f->given,
+                                        .orbit = &f->orbit,
+                                        .iterations = c->iterations};
+  int over = t->seen ? t->seen(&point, t->user) : 0;
+  family_forget(f);
+  return over;
+}
+
+/* --- the start ---------------------------------------------------------------------------------------------------- */
+
+static ric_status choose_multiplier(tracer *t, const ric_family_point *point) {
+  double both[2], breaking;
+  RIC_TRY(shooting_matrix(t->f->shooting, point->z, t->f->given, t->error));
+  shooting_spectrum_tests(t->f->shooting, both, &breaking);
+  t->which = fabs(both[1]) < fabs(both[0]) ? 1 : 0;
+  return RIC_OK;
+}
+
+/* Which gap or impact the point is about. */
+static ric_status choose_test(tracer *t, const ric_family_point *point) {
+  ric_family *f = t->f;
+  double least = INFINITY;
+  RIC_TRY(ric_shooting_orbit(f->shooting, point->z, f->given, &f->orbit, t->error));
+  if (point->kind == RIC_FAMILY_GRAZING) {
+    t->which = f->shooting->gaps->hit[point->obstacle] ? TEST_OWN_GAP : TEST_FREE_GAP;
+    return RIC_OK;
+  }
+  for (size_t k = 0; k < f->impacts; k++)
+    if (f->orbit.impact_obstacle[k] == point->obstacle && fabs(f->orbit.gap_rate[k]) < least) {
+      least = fabs(f->orbit.gap_rate[k]);
+      t->which = TEST_IMPACTS + k;
+    }
+  return RIC_OK;
+}
+
+static ric_status choose(tracer *t, const ric_family_point *point) {
+  t->kind = point->kind;
+  RIC_TRY(family_set(t->f, point->parameter, t->f->problem.second, t->error));
+  switch (point->kind) {
+  case RIC_FAMILY_FOLD:
+    return RIC_OK;
+  case RIC_FAMILY_PERIOD_DOUBLING:
+    return choose_multiplier(t, point);
+  case RIC_FAMILY_GRAZING:
+  case RIC_FAMILY_IMPACT_LOST:
+  case RIC_FAMILY_IMPULSE_SIGN:
+    return choose_test(t, point);
+  default:
+    return ric_fail(t->error, RIC_EINVAL,
+                    "point = %s, expected fold, period_doubling, grazing, impact_lost or impulse_sign",
+                    ric_family_kind_name(point->kind));
+  }
+}
+
+/* A unit in which the slopes of psi are of order one. */
+static ric_status choose_unit(tracer *t, const double *z, double first, double second, double *slopes) {
+  double size = 0;
+  t->unit = 1;
+  RIC_TRY(gradient(t, z, first, second, slopes, t->error));
+  for (size_t i = 0; i < t->f->unknowns + 2; i++)
+    size = fmax(size, fabs(slopes[i]));
+  if (!(size > 0 && size < INFINITY))
+    return ric_fail(t->error, RIC_ENUMERIC, "what vanishes at the special point has slopes of size %g", size);
+  t->unit = size;
+  return RIC_OK;
+}
+
+static ric_status walk(tracer *t, const ric_family_point *point, const ric_curve_options *options, ric_curve_run *run,
+                       double *u) {
+  size_t n = t->f->unknowns;
+  const ric_curve_problem problem = {.unknowns = n + 1, .residual = residual, .user = t};
+  ric_curve *curve = NULL;
+  RIC_TRY(choose(t, point));
+  memcpy(u, point->z, n * sizeof *u);
+  u[n] = point->parameter;
+  RIC_TRY(choose_unit(t, point->z, point->parameter, t->f->problem.second, u + n + 1));
+  RIC_TRY(ric_curve_create(&problem, options, &curve, t->error));
+  ric_status status = ric_curve_follow(curve, u, t->f->problem.second, NULL, show, t, run, t->error);
+  ric_curve_destroy(&curve);
+  return status == RIC_OK ? t->status : status;
+}
+
+ric_status ric_family_trace(ric_family *f, const ric_family_point *point, const ric_curve_options *options,
+                            int (*seen)(const ric_family_curve_point *point, void *user), void *user,
+                            ric_curve_run *run, ric_error *error) {
+  ric_error own;
+  size_t n = f->unknowns;
+  tracer t = {.f = f, .seen = seen, .user = user, .error = error ? error : &own};
+  *run = (ric_curve_run){0};
+  if (f->problem.parameters != 2)
+    return ric_fail(error, RIC_EINVAL, "a family with one parameter, expected two");
+  family_forget(f);
+  t.J = malloc((n * n + 6 * n + 4) * sizeof *t.J);
+  t.order = gsl_permutation_alloc(n);
+  ric_status status = RIC_ENOMEM;
+  if (t.J && t.order) {
+    t.F = t.J + n * n;
+    t.F_p = t.F + n;
+    t.z = t.F_p + n;
+    gsl_error_handler_t *handler = gsl_set_error_handler_off();
+    status = walk(&t, point, options ? options : &f->options.curve, run, t.z + n);
+    gsl_set_error_handler(handler);
+  } else
+    (void)ric_fail(error, RIC_ENOMEM, "no memory for a curve of %zu unknowns", n + 1);
+  family_forget(f);
+  gsl_permutation_free(t.order);
+  free(t.J);
+  return status;
+}

@@ -1,0 +1,17 @@
+#include "sundials_context.h"
+
+#include <stddef.h>
+
+#if SUNDIALS_VERSION_MAJOR >= 7
+int sundials_context_create(SUNContext *context) {
+  return SUNContext_Create(SUN_COMM_NULL, context) || SUNContext_ClearErrHandlers(*context);
+}
+#else
+int sundials_context_create(SUNContext *context) {
+  return SUNContext_Create(NULL, context);
+}
+
+void sundials_say_nothing(int code, const char *module, const char *function, char *message, void *user) {
+  (void)code, (void)module, (void)function, (void)message, (void)user;
+}
+#endif

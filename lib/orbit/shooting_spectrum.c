@@ -1,0 +1,300 @@
+#include "shooting_spectrum.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <gsl/gsl_errno.h>
+
+#include "multiplier_verdict.h"
+
+static bool is_even(const ric_shooting *s) {
+  return s->arcs.kind == RIC_MOTION_EVEN;
+}
+
+/* Whether time does not enter an even motion. */
+static bool is_free(const ric_shooting *s) {
+  return !s->system->model->forced(s->system);
+}
+
+ric_status shooting_spectrum_create(ric_shooting *s, shooting_spectrum **spectrum, ric_error *error) {
+  size_t size = s->arcs.size, n = s->arcs.coordinates, bordered = is_even(s) ? n + 1 : size;
+  shooting_spectrum *k = *spectrum = calloc(1, sizeof *k);
+  if (k) {
+    k->size = size;
+    k->matrix = size < SIZE_MAX / 64 / size ? malloc((size * size + 2 * size) * sizeof *k->matrix) : NULL;
+    k->contact = calloc(s->system->obstacle_count + 1, 1);
+    k->bordered = gsl_matrix_alloc(bordered, bordered);
+    k->order = gsl_permutation_alloc(bordered);
+  }
+  if (!k || !k->matrix || !k->contact || !k->bordered || !k->order) {
+    shooting_spectrum_destroy(spectrum);
+    return ric_fail(error, RIC_ENOMEM, "no memory for a matrix of size %zu", size);
+  }
+  k->start = k->matrix + size * size;
+  k->half = k->start + size;
+  ric_status status = tangent_jump_init(&k->jump, s->system, &s->law, size, error);
+  if (status == RIC_OK && is_even(s))
+    status = even_spectrum_reserve(&k->even, n, error);
+  if (status != RIC_OK)
+    shooting_spectrum_destroy(spectrum);
+  return status;
+}
+
+void shooting_spectrum_destroy(shooting_spectrum **spectrum) {
+  shooting_spectrum *k = *spectrum;
+  if (!k)
+    return;
+  tangent_jump_clear(&k->jump);
+  even_spectrum_clear(&k->even);
+  if (k->bordered)
+    gsl_matrix_free(k->bordered);
+  gsl_permutation_free(k->order);
+  free(k->matrix);
+  free(k->contact);
+  free(k);
+  *spectrum = NULL;
+}
+
+/* --- along the motion --------------------------------------------------------------------------------------------- */
+
+static double *entry(const shooting_spectrum *k, size_t row, size_t column) {
+  return &k->matrix[row * k->size + column];
+}
+
+/* Saltation of the impact at the end of a piece. */
+static ric_status jump(ric_shooting *s, const piece_run *run, ric_error *error) {
+  shooting_spectrum *k = s->spectrum;
+  size_t n = s->arcs.coordinates, obstacle = run->piece->obstacle;
+  double e = s->system->model->restitution(s->system, obstacle);
+  double rate = ric_system_gap_rate(s->system, obstacle, run->end, s->x, s->x + n);
+  jump_group group = {&obstacle, &e, 1, false};
+  tangents d = {.columns = k->size, .q = k->matrix, .u = k->matrix + n * k->size};
+  ric_saltation_kind kind = RIC_SALTATION_GRAZING;
+  if (rate < 0) {
+    for (size_t j = 0; j < s->system->obstacle_count; j++) {
+      bool complies = s->system->obstacles && isfinite(s->system->obstacles[j].stiffness);
+      k->contact[j] = complies && ric_system_gap(s->system, j, run->end, s->x) < 0 ? CONTACT_PRESSED : CONTACT_OPEN;
+    }
+    RIC_TRY(tangent_jump_apply(&k->jump, run->end, &group, s->grazing_tol, k->contact, k->contact, s->x, s->x + n, &d,
+                               &kind, error));
+  }
+  k->grazing = kind != RIC_SALTATION_DIFFERENTIABLE;
+  k->obstacle = obstacle;
+  return RIC_OK;
+}
+
+/* Carries the matrix along all pieces. */
+static ric_status carry(ric_shooting *s, const double *z, double period, ric_error *error) {
+  shooting_spectrum *k = s->spectrum;
+  for (size_t i = 0; i < s->arcs.count && !k->grazing; i++) {
+    piece_run run = shooting_begin(s, i, z, period, false);
+    RIC_TRY(arc_runner_move(&s->runner, run.begin, run.end, s->x, k->size, k->matrix, NULL, error));
+    if (run.piece->how == PIECE_IMPACT)
+      RIC_TRY(jump(s, &run, error));
+  }
+  return RIC_OK;
+}
+
+/* --- even motions ------------------------------------------------------------------------------------------------- */
+
+/* Half of a kick: what an impact at a turning point adds to the speed of its coordinate, per displacement. Of a
+ * saltation matrix of an elastic impact the entry is 2 a / v-, a the acceleration and v- the speed before. */
+static double half_kick(double acceleration, double speed_before) {
+  return -acceleration / speed_before;
+}
+
+/* Rates at a state, and whether every impact there is fast enough; those of inadmissible motions may come from the
+ * other side. */
+static ric_status look_at_turning(ric_shooting *s, const size_t *hit, double t, ric_error *error) {
+  size_t n = s->arcs.coordinates;
+  RIC_TRY(ric_system_rate(s->system, t, s->x, s->x + n, s->rates, s->rates + n, error));
+  for (size_t i = 0; i < n; i++) {
+    if (hit[i] == NO_UNKNOWN || fabs(s->x[n + i]) > s->grazing_tol)
+      continue;
+    s->spectrum->grazing = true;
+    s->spectrum->obstacle = hit[i];
+  }
+  return RIC_OK;
+}
+
+/* The columns (s, a) of the start, as tangent vectors just after the impacts. */
+static void set_start(ric_shooting *s) {
+  shooting_spectrum *k = s->spectrum;
+  size_t n = s->arcs.coordinates;
+  memset(k->matrix, 0, k->size * k->size * sizeof *k->matrix);
+  for (size_t i = 0; i < n; i++) {
+    double mass = s->system->model->mass(s->system, i);
+    bool hit = s->arcs.at_start[i] != NO_UNKNOWN;
+    *entry(k, hit ? n + i : i, i) = hit ? 1 / mass : 1;
+    *entry(k, hit ? i : n + i, n + i) = hit ? -1 : 1 / mass;
+    if (hit)
+      *entry(k, n + i, n + i) = -half_kick(s->rates[n + i], -s->x[n + i]);
+    k->start[n + i] = hit ? -s->x[n + i] : mass * s->rates[n + i];
+  }
+}
+
+/* Rows just before the impacts at T/2 become (s, a) in their middle. */
+static void set_half(ric_shooting *s) {
+  shooting_spectrum *k = s->spectrum;
+  size_t n = s->arcs.coordinates;
+  for (size_t i = 0; i < n; i++) {
+    double mass = s->system->model->mass(s->system, i), *q = entry(k, i, 0), *v = entry(k, n + i, 0);
+    bool hit = s->arcs.at_half[i] != NO_UNKNOWN;
+    double kick = hit ? half_kick(s->rates[n + i], s->x[n + i]) : 0;
+    for (size_t j = 0; j < k->size; j++) {
+      double place = q[j], momentum = mass * (v[j] + kick * place);
+      q[j] = hit ? momentum : place;
+      v[j] = hit ? -place : momentum;
+    }
+    k->half[n + i] = hit ? -s->x[n + i] : mass * s->rates[n + i];
+  }
+}
+
+static ric_status even_matrix(ric_shooting *s, const double *z, double period, ric_error *error) {
+  (void)shooting_begin(s, 0, z, period, false);
+  RIC_TRY(look_at_turning(s, s->arcs.at_start, 0, error));
+  if (s->spectrum->grazing)
+    return RIC_OK;
+  set_start(s);
+  RIC_TRY(carry(s, z, period, error));
+  if (s->spectrum->grazing)
+    return RIC_OK;
+  RIC_TRY(look_at_turning(s, s->arcs.at_half, period / 2, error));
+  if (!s->spectrum->grazing)
+    set_half(s);
+  return RIC_OK;
+}
+
+/* W = 1 + 2 B^T C, and the gradient of the energy in (s, a): that is, the a-part of the rates. */
+static void set_block(ric_shooting *s) {
+  const shooting_spectrum *k = s->spectrum;
+  size_t n = s->arcs.coordinates;
+  const even_spectrum *e = &k->even;
+  for (size_t i = 0; i < n; i++) {
+    double *row = gsl_matrix_ptr(e->block, i, 0);
+    for (size_t j = 0; j < n; j++)
+      row[j] = i == j ? 1 : 0;
+    for (size_t l = 0; l < n; l++) {
+      double b = 2 * *entry(k, l, n + i);
+      const double *c = entry(k, n + l, 0);
+      for (size_t j = 0; j < n; j++)
+        row[j] += b * c[j];
+    }
+    gsl_vector_set(e->left, i, k->start[n + i]);
+  }
+}
+
+/* --- results ------------------------------------------------------------------------------------------------------ */
+
+ric_status shooting_matrix(ric_shooting *s, const double *z, double given, ric_error *error) {
+  double period;
+  RIC_TRY(shooting_period(s, z, given, &period, error));
+  if (!s->spectrum)
+    RIC_TRY(shooting_spectrum_create(s, &s->spectrum, error));
+  shooting_spectrum *k = s->spectrum;
+  k->grazing = false;
+  if (is_even(s))
+    return even_matrix(s, z, period, error);
+  memset(k->matrix, 0, k->size * k->size * sizeof *k->matrix);
+  for (size_t i = 0; i < k->size; i++)
+    *entry(k, i, i) = 1;
+  return carry(s, z, period, error);
+}
+
+static double determinant(const shooting_spectrum *k, size_t size) {
+  int sign;
+  gsl_matrix_view a = gsl_matrix_submatrix(k->bordered, 0, 0, size, size);
+  gsl_permutation order = {.size = size, .data = k->order->data};
+  gsl_permutation_init(&order);
+  gsl_linalg_LU_decomp(&a.matrix, &order, &sign);
+  double log = gsl_linalg_LU_lndet(&a.matrix);
+  return gsl_linalg_LU_sgndet(&a.matrix, sign) * exp(fmax(-600, fmin(log, 600)));
+}
+
+static double determinant_of_block(const ric_shooting *s, size_t row, size_t column) {
+  const shooting_spectrum *k = s->spectrum;
+  size_t n = s->arcs.coordinates;
+  for (size_t i = 0; i < n; i++)
+    memcpy(gsl_matrix_ptr(k->bordered, i, 0), entry(k, row + i, column), n * sizeof(double));
+  return determinant(k, n);
+}
+
+/* B takes the a-part of the motion's rates at the start to zero, and so does its transpose with that at T/2. */
+static double determinant_of_breaking(const ric_shooting *s) {
+  const shooting_spectrum *k = s->spectrum;
+  size_t n = s->arcs.coordinates;
+  if (!is_free(s))
+    return determinant_of_block(s, 0, n);
+  for (size_t i = 0; i < n; i++) {
+    memcpy(gsl_matrix_ptr(k->bordered, i, 0), entry(k, i, n), n * sizeof(double));
+    gsl_matrix_set(k->bordered, i, n, k->half[n + i]);
+    gsl_matrix_set(k->bordered, n, i, k->start[n + i]);
+  }
+  gsl_matrix_set(k->bordered, n, n, 0);
+  return determinant(k, n + 1);
+}
+
+void shooting_spectrum_tests(ric_shooting *s, double *minus_one, double *breaking) {
+  const shooting_spectrum *k = s->spectrum;
+  size_t n = s->arcs.coordinates;
+  minus_one[0] = minus_one[1] = *breaking = NAN;
+  if (k->grazing)
+    return;
+  gsl_error_handler_t *handler = gsl_set_error_handler_off();
+  if (is_even(s)) {
+    minus_one[0] = determinant_of_block(s, 0, 0);
+    minus_one[1] = determinant_of_block(s, n, n);
+    *breaking = determinant_of_breaking(s);
+  } else {
+    memcpy(k->bordered->data, k->matrix, k->size * k->size * sizeof *k->matrix);
+    for (size_t i = 0; i < k->size; i++)
+      *gsl_matrix_ptr(k->bordered, i, i) += 1;
+    minus_one[0] = determinant(k, k->size);
+  }
+  gsl_set_error_handler(handler);
+}
+
+static size_t trivial_of(const ric_shooting *s) {
+  return s->arcs.kind == RIC_MOTION_AUTONOMOUS ? 1 : s->arcs.kind == RIC_MOTION_CONSERVATIVE ? 2 : 0;
+}
+
+static void say_grazing(const shooting_spectrum *k, ric_multipliers *m) {
+  char reason[sizeof m->reason];
+  snprintf(reason, sizeof reason, "grazing: obstacle %zu is not hit with a gap rate below zero", k->obstacle);
+  ric_multipliers_fail(m, reason);
+}
+
+static ric_status even_multipliers(ric_shooting *s, const ric_multiplier_options *o, ric_multipliers *m,
+                                   ric_error *error) {
+  set_block(s);
+  RIC_TRY(even_spectrum_find(&s->spectrum->even, is_free(s), error));
+  even_spectrum_multipliers(&s->spectrum->even, o, m);
+  return RIC_OK;
+}
+
+ric_status shooting_multipliers(ric_shooting *s, const ric_multiplier_options *options, ric_multipliers *m,
+                                ric_error *error) {
+  ric_multiplier_options o = options ? *options : ric_multiplier_options_default();
+  RIC_TRY(multiplier_options_check(&o, error));
+  if (m->dimension != s->arcs.size)
+    return ric_fail(error, RIC_EINVAL, "room for %zu multipliers, expected %zu", m->dimension, s->arcs.size);
+  ric_multipliers_fail(m, "not computed");
+  if (s->spectrum->grazing) {
+    say_grazing(s->spectrum, m);
+    return RIC_OK;
+  }
+  if (!is_even(s))
+    return ric_multipliers_of_matrix(s->spectrum->matrix, s->arcs.size, trivial_of(s), &o, m, error);
+  gsl_error_handler_t *handler = gsl_set_error_handler_off();
+  ric_status status = even_multipliers(s, &o, m, error);
+  gsl_set_error_handler(handler);
+  return status;
+}
+
+ric_status ric_shooting_multipliers(ric_shooting *s, const double *z, double given,
+                                    const ric_multiplier_options *options, ric_multipliers *m, ric_error *error) {
+  RIC_TRY(shooting_matrix(s, z, given, error));
+  return shooting_multipliers(s, options, m, error);
+}

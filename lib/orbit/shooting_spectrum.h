@@ -1,0 +1,51 @@
+/* Multipliers of motions that shooting has found: internal to the room.
+ *
+ * Even motions. Half a period G, from the middle of the impacts at t = 0 to the middle of those at T/2, is symplectic.
+ * In coordinates (s, a), states that time reversal leaves alone and those that it turns around (displacements and
+ * momenta of coordinates at rest; momenta and minus displacements of those that are hit),
+ *
+ *   G = | A  B |     M = (R G^-1 R) G,    W = 1 + 2 B^T C,
+ *       | C  D |
+ *
+ * with W the n x n block of even_spectrum.h. C is the Jacobian of shooting. Each of the four blocks is singular where a
+ * pair of multipliers meets: C at +1 in the family (folds, branch points), B at +1 out of it (the orbit stops being
+ * even), A and D at -1. The motion itself is in the kernel of B when time does not enter, which is taken out.
+ *
+ * All others: the eigenvalues of M, from the tangent vectors of the arcs and saltation. */
+#ifndef RICOCHET_SHOOTING_SPECTRUM_H
+#define RICOCHET_SHOOTING_SPECTRUM_H
+
+#include <gsl/gsl_linalg.h>
+
+#include "even_spectrum.h"
+#include "shooting_parts.h"
+
+typedef struct shooting_spectrum {
+  size_t size;          /* n + m */
+  double *matrix;       /* [n + m][n + m] G or M */
+  double *start, *half; /* [n + m] rates (s, a) there; of even motions */
+  even_spectrum even;
+  gsl_matrix *bordered; /* [n + 1][n + 1], or [n + m][n + m] */
+  gsl_permutation *order;
+  tangent_jump jump;      /* for n + m columns */
+  unsigned char *contact; /* [obstacles] all open, or pressed where they comply */
+  bool grazing;           /* an impact is too slow for a derivative */
+  size_t obstacle;        /* which */
+} shooting_spectrum;
+
+ric_status shooting_spectrum_create(ric_shooting *s, shooting_spectrum **spectrum, ric_error *error);
+void shooting_spectrum_destroy(shooting_spectrum **spectrum);
+
+/** Finds G or M at a solution: s->spectrum->matrix; or `grazing`. */
+ric_status shooting_matrix(ric_shooting *s, const double *z, double given, ric_error *error);
+
+/** The multipliers of the matrix found. @param m  initialised for n + m */
+ric_status shooting_multipliers(ric_shooting *s, const ric_multiplier_options *options, ric_multipliers *m,
+                                ric_error *error);
+
+/** Test functions at the matrix found, smooth along a family, with simple zeros.
+ *  @param minus_one  [2] multipliers -1: determinants of A and D; of M + 1, and NaN
+ *  @param breaking  of even motions the determinant of B, the motion taken out; NaN of others */
+void shooting_spectrum_tests(ric_shooting *s, double *minus_one, double *breaking);
+
+#endif
