@@ -17,7 +17,7 @@ typedef struct cvodes_flow {
   bool callback_failed;
   double *coef; /* [CVODES_ORDER + 1][n + m] of the step */
   int degree;
-  double *work;        /* of system_tangent; NULL: no tangent vectors have been carried */
+  double *work;        /* of system_tangent, and d and d_rate; NULL: no tangent vectors have been carried */
   tangents d, d_rate;  /* [n + m][columns] work; d_rate: on a step lost in the rounding of time, the rates there */
   const char *trouble; /* of the last transport, for the next step to tell */
 } cvodes_flow;
@@ -63,10 +63,9 @@ static ric_status carry(ric_flow *flow, ric_error *error) {
   cvodes_flow *f = (cvodes_flow *)flow;
   size_t n = flow->system->coordinates, size = n + flow->system->speeds, columns = flow->tangent.columns;
   RIC_TRY(cvodes_solver_carry(&f->solver, columns, error));
-  free(f->work);
-  f->work = NULL;
-  if (columns == 0)
+  if (columns == 0 || (f->work && columns == f->d.columns))
     return RIC_OK;
+  free(f->work);
   f->work = malloc((system_tangent_work(flow->system) + 2 * size * columns) * sizeof *f->work);
   if (!f->work)
     return ric_fail(error, RIC_ENOMEM, "no memory for %zu tangent vectors of %zu numbers", columns, size);

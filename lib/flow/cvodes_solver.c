@@ -100,7 +100,7 @@ const char *cvodes_solver_restart(cvodes_solver *s, double t) {
   s->origin = t;
   if (CVodeReInit(s->memory, 0, s->y))
     return "CVODES refuses to start";
-  return s->tangents.columns > 0 ? cvodes_tangents_restart(s) : NULL;
+  return s->tangents.carried ? cvodes_tangents_restart(s) : NULL;
 }
 
 static const char *text_of(int code) {

@@ -6,6 +6,8 @@
 #ifndef RICOCHET_CVODES_SOLVER_H
 #define RICOCHET_CVODES_SOLVER_H
 
+#include <stdbool.h>
+
 #include <cvodes/cvodes.h>
 
 #include "ricochet/status.h"
@@ -14,7 +16,8 @@ enum { CVODES_ORDER = 12 };
 
 /** Tangent vectors in CVODES' forward sensitivity analysis (staggered, under the error control of the state). */
 typedef struct cvodes_tangents {
-  size_t columns;   /* 0: none */
+  size_t columns;   /* there is room for, and CVODES knows of; 0: none */
+  bool carried;     /* they take part */
   N_Vector *vector; /* [columns] */
   SUNNonlinearSolver iteration;
   double *absolute;     /* [columns] tolerances */
@@ -47,7 +50,7 @@ void cvodes_solver_clear(cvodes_solver *s);
 /** The state [size]; written before a restart, read after a step. */
 double *cvodes_solver_state(const cvodes_solver *s);
 
-/** Makes room for tangent vectors; 0: none any more. A restart must follow. */
+/** Makes room for tangent vectors; 0: none any more, whose room stays for as many again. A restart must follow. */
 ric_status cvodes_solver_carry(cvodes_solver *s, size_t columns, ric_error *error);
 void cvodes_tangents_clear(cvodes_solver *s);
 

@@ -64,12 +64,14 @@ static int set_up(cvodes_solver *s) {
 }
 
 ric_status cvodes_solver_carry(cvodes_solver *s, size_t columns, ric_error *error) {
-  if (columns == s->tangents.columns)
+  s->tangents.carried = columns > 0;
+  if (columns == 0 && s->tangents.columns > 0)
+    CVodeSensToggleOff(s->memory); /* the next restart with them turns them on */
+  if (columns == 0 || columns == s->tangents.columns)
     return RIC_OK;
   cvodes_tangents_clear(s);
-  if (columns == 0)
-    return RIC_OK;
   RIC_TRY(allocate(s, columns, error));
+  s->tangents.carried = true;
   if (set_up(s) == 0)
     return RIC_OK;
   cvodes_tangents_clear(s);

@@ -45,7 +45,8 @@ ric_status ric_flow_create(const ric_system *system, const ric_flow_options *opt
 ric_status flow_init(ric_flow *flow, const flow_method *method, const ric_system *system,
                      const ric_flow_options *options, ric_error *error) {
   size_t n = system->coordinates, m = system->speeds, count = system->obstacle_count;
-  *flow = (ric_flow){.method = method, .system = system, .options = *options, .pieces = 1};
+  *flow =
+      (ric_flow){.method = method, .system = system, .options = *options, .pieces = 1, .revision = system->revision};
   flow->q = calloc(n, sizeof *flow->q);
   flow->u = calloc(m ? m : 1, sizeof *flow->u);
   flow->contact = calloc(count ? count : 1, 1);
@@ -79,12 +80,27 @@ static ric_status check_finite(const char *name, const double *x, size_t count, 
   return RIC_OK;
 }
 
+static ric_status begin(ric_flow *flow, ric_error *error) {
+  unsigned long long revision = flow->system->revision;
+  if (flow->method->begin)
+    RIC_TRY(flow->method->begin(flow, flow->revision != revision, error));
+  flow->revision = revision;
+  return RIC_OK;
+}
+
+ric_status flow_check_revision(const ric_flow *flow, ric_error *error) {
+  if (flow->revision == flow->system->revision)
+    return RIC_OK;
+  return ric_fail(error, RIC_EINVAL, "the numbers of the system have changed during a motion, expected a new start");
+}
+
 ric_status ric_flow_start(ric_flow *flow, double t, const double *q, const double *u, ric_error *error) {
   size_t n = flow->system->coordinates, m = flow->system->speeds;
   if (!isfinite(t))
     return ric_fail(error, RIC_EINVAL, "t = %g, expected a finite time", t);
   RIC_TRY(check_finite("q", q, n, error));
   RIC_TRY(check_finite("u", u, m, error));
+  RIC_TRY(begin(flow, error));
   flow->time = flow->end = t;
   flow->length = 0;
   flow->tangent.columns = 0;
@@ -94,26 +110,28 @@ ric_status ric_flow_start(ric_flow *flow, double t, const double *q, const doubl
   return flow_restart(flow, error);
 }
 
-/* Room for tangents, in one block. */
+/* Room for tangents, in one block, which stays when there are fewer. */
 static ric_status reserve_tangents(ric_flow *flow, size_t columns, ric_error *error) {
   size_t n = flow->system->coordinates, m = flow->system->speeds;
   tangents *d = &flow->tangent;
-  if (columns == d->columns)
-    return RIC_OK;
-  free(d->q);
-  *d = (tangents){0};
-  if (columns == 0)
-    return RIC_OK;
-  d->q = columns <= SIZE_MAX / sizeof *d->q / (n + m) ? malloc((n + m) * columns * sizeof *d->q) : NULL;
-  if (!d->q)
-    return ric_fail(error, RIC_ENOMEM, "no memory for %zu tangent vectors of %zu numbers", columns, n + m);
-  d->u = d->q + n * columns;
+  if (columns > flow->tangent_room) {
+    free(d->q);
+    *d = (tangents){0};
+    flow->tangent_room = 0;
+    d->q = columns <= SIZE_MAX / sizeof *d->q / (n + m) ? malloc((n + m) * columns * sizeof *d->q) : NULL;
+    if (!d->q)
+      return ric_fail(error, RIC_ENOMEM, "no memory for %zu tangent vectors of %zu numbers", columns, n + m);
+    flow->tangent_room = columns;
+  }
+  if (columns > 0)
+    d->u = d->q + n * columns;
   d->columns = columns;
   return RIC_OK;
 }
 
 ric_status ric_flow_carry(ric_flow *flow, size_t columns, const double *dq, const double *du, ric_error *error) {
   size_t n = flow->system->coordinates, m = flow->system->speeds;
+  RIC_TRY(flow_check_revision(flow, error));
   RIC_TRY(check_finite("dq", dq, n * columns, error));
   RIC_TRY(check_finite("du", du, m * columns, error));
   RIC_TRY(reserve_tangents(flow, columns, error));
@@ -148,6 +166,7 @@ ric_status flow_restart(ric_flow *flow, ric_error *error) {
 
 ric_status ric_flow_step(ric_flow *flow, double stop, ric_error *error) {
   flow->length = 0;
+  RIC_TRY(flow_check_revision(flow, error));
   if (!isfinite(stop))
     return ric_fail(error, RIC_EINVAL, "stop = %g, expected a finite time", stop);
   if (stop == flow->time)

@@ -6,6 +6,10 @@
 #include "ricochet/flow.h"
 
 typedef struct flow_method {
+  /** A new motion begins; `start` follows. Forgets what the steps of the motion before have told; `renewed`: takes over
+   *  the system's numbers, which are others since the last time. A failure leaves arrays to be destroyed, or to begin
+   *  with again. NULL: the flow keeps nothing of either. */
+  ric_status (*begin)(ric_flow *flow, bool renewed, ric_error *error);
   /** Forgets the history; time, state and contacts of the flow have changed. */
   ric_status (*start)(ric_flow *flow, ric_error *error);
   /** Sets flow->length and flow->end for a step towards `stop`; end is `stop` itself when the step reaches it. */
@@ -27,11 +31,13 @@ typedef struct flow_method {
 struct ric_flow {
   const flow_method *method;
   const ric_system *system;
-  ric_flow_options options; /* with every default filled in */
-  double time, length, end; /* start of the step, its signed length, its end */
-  double *q, *u;            /* [n], [m] state at `time`, owned */
-  unsigned char *contact;   /* [obstacles] contact_state, owned */
-  tangents tangent;         /* at `time`, owned */
+  ric_flow_options options;    /* with every default filled in */
+  double time, length, end;    /* start of the step, its signed length, its end */
+  double *q, *u;               /* [n], [m] state at `time`, owned */
+  unsigned char *contact;      /* [obstacles] contact_state, owned */
+  tangents tangent;            /* at `time`, owned */
+  size_t tangent_room;         /* columns that its block has room for */
+  unsigned long long revision; /* of the system, whose numbers the flow has */
   size_t pieces;
   ric_flow_counts counts;
 };
@@ -48,6 +54,9 @@ ric_status cvodes_flow_create(const ric_system *system, const ric_flow_options *
 ric_status flow_init(ric_flow *flow, const flow_method *method, const ric_system *system,
                      const ric_flow_options *options, ric_error *error);
 void flow_clear(ric_flow *flow);
+
+/** @returns RIC_EINVAL when the system has changed since the start. */
+ric_status flow_check_revision(const ric_flow *flow, ric_error *error);
 
 /** The state, the tangents or the contacts were changed in place: forgets the history. */
 ric_status flow_restart(ric_flow *flow, ric_error *error);

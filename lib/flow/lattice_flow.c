@@ -152,14 +152,22 @@ static void destroy(ric_flow *flow) {
   free(f);
 }
 
-static const flow_method method = {.start = start,
-                                   .step = step,
-                                   .piece = piece,
-                                   .accept = accept,
-                                   .reaction = lattice_flow_reaction,
-                                   .carry = carry,
-                                   .transport = transport,
-                                   .destroy = destroy};
+/* Gives a series the terms of the lattice; one that has them stays. */
+static ric_status fit(const lattice_flow *f, size_t block, lattice_series **series, ric_error *error) {
+  lattice_series *made = NULL;
+  if (*series && lattice_series_fits(*series, f->lattice))
+    return RIC_OK;
+  RIC_TRY(lattice_series_create(f->lattice, f->stepper.order, block, &made, error));
+  lattice_series_destroy(series);
+  *series = made;
+  return RIC_OK;
+}
+
+static ric_status fit_series(lattice_flow *f, ric_error *error) {
+  bool beside = f->base.pieces > 1 && f->base.system->obstacle_count > 0;
+  RIC_TRY(fit(f, f->block, &f->series, error));
+  return beside ? fit(f, 3, &f->aside, error) : RIC_OK;
+}
 
 static ric_status allocate(lattice_flow *f, ric_error *error) {
   size_t n = f->base.system->coordinates, obstacles = f->base.system->obstacle_count;
@@ -171,10 +179,7 @@ static ric_status allocate(lattice_flow *f, ric_error *error) {
   if (!f->q_next || !f->u_next || !f->held || !f->pressed)
     return ric_fail(error, RIC_ENOMEM, "no memory for a flow of %zu coordinates", n);
   f->acting = f->pressed + compliant;
-  RIC_TRY(lattice_series_create(f->lattice, f->stepper.order, f->block, &f->series, error));
-  if (f->base.pieces > 1 && obstacles > 0)
-    RIC_TRY(lattice_series_create(f->lattice, f->stepper.order, 3, &f->aside, error));
-  return RIC_OK;
+  return fit_series(f, error);
 }
 
 static bool spring_is_linear(const ric_spring *s) {
@@ -203,6 +208,28 @@ static void plan(lattice_flow *f) {
   f->block = (n + pieces - 1) / pieces;
   f->base.pieces = (n + f->block - 1) / f->block;
 }
+
+static ric_status begin(ric_flow *flow, bool renewed, ric_error *error) {
+  lattice_flow *f = self(flow);
+  f->stepper.trial = taylor_stepper_natural(&f->stepper);
+  if (!renewed)
+    return RIC_OK;
+  plan(f);
+  f->contacts_changed = true; /* and with them the rows of the series */
+  if (f->variation && !lattice_variation_renew(f->variation))
+    lattice_variation_destroy(&f->variation); /* made again for the next tangent vectors */
+  return fit_series(f, error);
+}
+
+static const flow_method method = {.begin = begin,
+                                   .start = start,
+                                   .step = step,
+                                   .piece = piece,
+                                   .accept = accept,
+                                   .reaction = lattice_flow_reaction,
+                                   .carry = carry,
+                                   .transport = transport,
+                                   .destroy = destroy};
 
 ric_status lattice_flow_create(const ric_system *system, const ric_flow_options *options, ric_flow **flow,
                                ric_error *error) {

@@ -92,6 +92,10 @@ ric_status lattice_series_create(const ric_lattice *lattice, int order, size_t b
   return RIC_OK;
 }
 
+bool lattice_series_fits(const lattice_series *s, const ric_lattice *lattice) {
+  return s->block.terms == terms_of(lattice);
+}
+
 void lattice_series_destroy(lattice_series **series) {
   if (!series || !*series)
     return;

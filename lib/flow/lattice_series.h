@@ -34,12 +34,15 @@ typedef struct lattice_contacts {
 /** Workspace of one block. */
 typedef struct lattice_series lattice_series;
 
-/** @param lattice  says which terms there will be: later ones must not have others
+/** @param lattice  says which terms there will be: later ones must fit
  *  @param order  4 to LATTICE_SERIES_ORDER
  *  @param block  most particles of a stretch */
 ric_status lattice_series_create(const ric_lattice *lattice, int order, size_t block, lattice_series **series,
                                  ric_error *error);
 void lattice_series_destroy(lattice_series **series);
+
+/** Whether a lattice has the terms that the workspace was made for, no more and no fewer. */
+bool lattice_series_fits(const lattice_series *series, const ric_lattice *lattice);
 
 /** Sets the lattice and its contacts (NULL: none), both borrowed until the next call.
  *  @returns RIC_ENOMEM. */

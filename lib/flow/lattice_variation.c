@@ -187,6 +187,17 @@ static void load_particle(lattice_variation *v, const ric_lattice *l, size_t i) 
                   right.quadratic != 0 || right.cubic != 0;
 }
 
+static void load(lattice_variation *v) {
+  v->damped = v->nonlinear = false;
+  for (size_t i = 0; i < v->n; i++)
+    load_particle(v, v->lattice, i);
+}
+
+bool lattice_variation_renew(lattice_variation *v) {
+  load(v);
+  return v->keeps || !v->nonlinear;
+}
+
 static double *take(double **store, size_t count) {
   double *taken = *store;
   *store += count;
@@ -232,9 +243,8 @@ ric_status lattice_variation_create(const ric_lattice *lattice, int order, bool 
     v->lanes = LANES;
     made = allocate_constants(v);
   }
-  for (size_t i = 0; made && i < v->n; i++)
-    load_particle(v, lattice, i);
   if (made) {
+    load(v);
     v->keeps = v->nonlinear || compliant;
     made = allocate_levels(v);
   }

@@ -21,6 +21,9 @@ ric_status lattice_variation_create(const ric_lattice *lattice, int order, bool 
                                     lattice_variation **variation, ric_error *error);
 void lattice_variation_destroy(lattice_variation **variation);
 
+/** The numbers of the lattice are others: takes them over. @returns false when there is no room for its terms */
+bool lattice_variation_renew(lattice_variation *variation);
+
 /** Whether the stiffness may vary along a step; then the coordinates of the step are needed. */
 bool lattice_variation_varies(const lattice_variation *variation, const lattice_contacts *acting);
 

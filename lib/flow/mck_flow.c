@@ -210,15 +210,6 @@ static void mck_flow_destroy(ric_flow *flow) {
   free(f);
 }
 
-static const flow_method mck_method = {.start = mck_start,
-                                       .step = mck_step,
-                                       .piece = mck_piece,
-                                       .accept = mck_accept,
-                                       .reaction = mck_reaction,
-                                       .carry = mck_flow_carry,
-                                       .transport = mck_flow_transport,
-                                       .destroy = mck_flow_destroy};
-
 static bool allocate(mck_flow *f, const mck_system *s) {
   size_t n = s->base.coordinates, levels = (size_t)f->stepper.order + 1;
   size_t compliant = system_compliant_obstacles(&s->base), rigid = s->base.obstacle_count - compliant;
@@ -235,6 +226,33 @@ static void plan(mck_flow *f, const mck_system *s) {
   taylor_stepper_plan(&f->stepper, taylor_rate_bound(mck_rows_norm(&s->stiffness), mck_rows_norm(&s->damping)),
                       forced ? s->frequency : 0);
 }
+
+/* A mass that has become dense couples the coordinates that are held. */
+static ric_status mck_begin(ric_flow *flow, bool renewed, ric_error *error) {
+  mck_flow *f = (mck_flow *)flow;
+  const mck_system *s = mck_flow_system(f);
+  if (!renewed)
+    return RIC_OK;
+  plan(f, s);
+  if (s->base.uncoupled || f->hold.factor)
+    return RIC_OK;
+  mck_hold made, before = f->hold;
+  bool room = mck_hold_init(&made, s, NULL);
+  if (room)
+    f->hold = made;
+  mck_hold_clear(room ? &before : &made);
+  return room ? RIC_OK : ric_fail(error, RIC_ENOMEM, "no memory for contacts");
+}
+
+static const flow_method mck_method = {.begin = mck_begin,
+                                       .start = mck_start,
+                                       .step = mck_step,
+                                       .piece = mck_piece,
+                                       .accept = mck_accept,
+                                       .reaction = mck_reaction,
+                                       .carry = mck_flow_carry,
+                                       .transport = mck_flow_transport,
+                                       .destroy = mck_flow_destroy};
 
 ric_status mck_flow_create(const ric_system *system, const ric_flow_options *options, ric_flow **flow,
                            ric_error *error) {

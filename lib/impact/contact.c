@@ -1,9 +1,9 @@
 /* The life of a contact: the one place that changes its state.
  *
- * A contact is open, pressed or held (kept by the flow, which its forces depend on). An open or pressed one departs
- * from zero, fast or slowly, until it is clear of it; a held one comes to rest, where a series of impacts was summed
- * up, or rests. Lists name those that are held, that depart, and that come to rest, so that no step looks at all
- * contacts. */
+ * A contact is open, pressed or held (kept by the flow, which its forces depend on), or passed for good: such a one has
+ * no events and is on no list. An open or pressed one departs from zero, fast or slowly, until it is clear of it; a
+ * held one comes to rest, where a series of impacts was summed up, or rests. Lists name those that are held, that
+ * depart, and that come to rest, so that no step looks at all contacts. */
 #include <string.h>
 
 #include "growing.h"
@@ -21,9 +21,16 @@ ric_status index_list_add(index_list *list, size_t item, ric_error *error) {
 void contacts_reset(ric_trajectory *tr) {
   size_t count = tr->system->obstacle_count;
   memset(tr->flow->contact, CONTACT_OPEN, count);
+  for (size_t j = 0; tr->options.pass_rigid && j < count; j++)
+    if (!system_complies(tr->system, j))
+      flow_set_contact(tr->flow, j, CONTACT_PASSED);
   memset(tr->resting, RESTS_NOT, count);
   memset(tr->locator.departure, DEPARTED, count);
   tr->held.count = tr->departing.count = tr->coming_count = 0;
+}
+
+bool contact_is_passed(const ric_trajectory *tr, size_t obstacle) {
+  return flow_contact(tr->flow, obstacle) == CONTACT_PASSED;
 }
 
 bool contact_persists(const ric_trajectory *tr, size_t obstacle) {

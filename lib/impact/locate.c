@@ -133,8 +133,7 @@ static ric_status look_at_root(scan *s, size_t obstacle, const gap_part *part, d
 
 static ric_status look(scan *s, size_t obstacle, watch what, const gap_part *part, bool *found) {
   departure from = part->from == 0 ? (departure)s->l->departure[obstacle] : DEPARTED;
-  bool rigid = !s->flow->system->obstacles || s->flow->system->obstacles[obstacle].stiffness == INFINITY;
-  if (what == WATCH_GAP && rigid)
+  if (what == WATCH_GAP && !system_complies(s->flow->system, obstacle))
     return look_at_gap(s, obstacle, part, from, found);
   return look_at_root(s, obstacle, part, what == WATCH_FORCE ? DEPARTED : from, found);
 }
@@ -165,8 +164,11 @@ static ric_status scan_part(scan *s, const ric_segment *piece, size_t obstacle, 
 static ric_status scan_contact(scan *s, const ric_segment *piece, size_t obstacle) {
   static const watch watches[] = {
       [CONTACT_OPEN] = WATCH_GAP, [CONTACT_HELD] = WATCH_FORCE, [CONTACT_PRESSED] = WATCH_PRESS};
+  contact_state now = flow_contact(s->flow, obstacle);
   bool found;
-  return scan_part(s, piece, obstacle, watches[flow_contact(s->flow, obstacle)], 0, 1, INFINITY, HALVINGS, &found);
+  if (now == CONTACT_PASSED)
+    return RIC_OK;
+  return scan_part(s, piece, obstacle, watches[now], 0, 1, INFINITY, HALVINGS, &found);
 }
 
 static ric_status make_room(locator *l, size_t width, ric_error *error) {

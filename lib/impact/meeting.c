@@ -28,10 +28,6 @@ static double rate_now(const ric_trajectory *tr, size_t obstacle) {
   return ric_system_gap_rate(tr->system, obstacle, tr->flow->time, tr->flow->q, tr->flow->u);
 }
 
-static bool is_compliant(const ric_trajectory *tr, size_t obstacle) {
-  return tr->system->obstacles && tr->system->obstacles[obstacle].stiffness < INFINITY;
-}
-
 /* Which way a contact at zero goes: by its rate, or by its acceleration where the rate is zero. */
 static ric_status goes_in(ric_trajectory *tr, size_t obstacle, bool *in, bool *fast, ric_error *error) {
   double rate = rate_now(tr, obstacle), acceleration;
@@ -222,7 +218,7 @@ static ric_status add_touching(ric_trajectory *tr, ric_error *error) {
   for (size_t i = 0; i < tr->departing.count; i++) {
     size_t obstacle = tr->departing.items[i];
     double rate = rate_now(tr, obstacle);
-    bool open = tr->locator.departure[obstacle] != DEPARTED && !is_compliant(tr, obstacle);
+    bool open = tr->locator.departure[obstacle] != DEPARTED && !system_complies(tr->system, obstacle);
     bool pressed = fabs(rate) <= tr->rate_noise;
     if (open && rate < -tr->rate_noise)
       RIC_TRY(is_pressed_on(tr, obstacle, rate, &pressed, error));
@@ -272,7 +268,7 @@ ric_status contacts_meet(ric_trajectory *tr, ric_error *error) {
   tr->impact_count = tr->settling.count = 0;
   for (size_t i = 0; i < tr->locator.roots.count; i++) {
     size_t obstacle = tr->locator.roots.hits[i].obstacle;
-    if (is_compliant(tr, obstacle))
+    if (system_complies(tr->system, obstacle))
       RIC_TRY(switch_contact(tr, obstacle, error));
     else if (flow_contact(tr->flow, obstacle) == CONTACT_HELD)
       RIC_TRY(contact_opens(tr, obstacle, DEPARTS_SLOWLY, error));
@@ -284,7 +280,7 @@ ric_status contacts_meet(ric_trajectory *tr, ric_error *error) {
 
 static ric_status begin_one(ric_trajectory *tr, size_t obstacle, ric_error *error) {
   double gap = gap_now(tr, obstacle), rate = rate_now(tr, obstacle), noise = tr->locator.noise;
-  if (is_compliant(tr, obstacle)) {
+  if (system_complies(tr->system, obstacle)) {
     if (gap < -noise)
       return contact_presses(tr, obstacle, DEPARTED, error);
     return gap <= noise ? set_compliant(tr, obstacle, error) : RIC_OK;
@@ -302,7 +298,8 @@ ric_status contacts_begin(ric_trajectory *tr, ric_error *error) {
   contacts_measure(tr);
   tr->impact_count = tr->settling.count = 0;
   for (size_t j = 0; j < tr->system->obstacle_count; j++)
-    RIC_TRY(begin_one(tr, j, error));
+    if (!contact_is_passed(tr, j))
+      RIC_TRY(begin_one(tr, j, error));
   RIC_TRY(resolve(tr, error));
   for (size_t i = 0; i < tr->held.count; i++)
     carried_hold(tr, tr->held.items[i]);

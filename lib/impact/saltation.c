@@ -30,10 +30,6 @@ typedef struct sequence {
   ric_saltation_kind kind;
 } sequence;
 
-static bool is_compliant(const ric_system *system, size_t obstacle) {
-  return system->obstacles && isfinite(system->obstacles[obstacle].stiffness);
-}
-
 static ric_status begin(sequence *s, ric_error *error) {
   size_t size = s->system->coordinates + s->system->speeds;
   RIC_TRY(impact_solver_init(&s->law, s->system, error));
@@ -43,7 +39,7 @@ static ric_status begin(sequence *s, ric_error *error) {
   if (!s->state || !s->contact)
     return ric_fail(error, RIC_ENOMEM, "no memory for %zu tangent vectors", size);
   for (size_t j = 0; j < s->system->obstacle_count; j++)
-    if (is_compliant(s->system, j) && ric_system_gap(s->system, j, s->t, s->q) < 0)
+    if (system_complies(s->system, j) && ric_system_gap(s->system, j, s->t, s->q) < 0)
       s->contact[j] = CONTACT_PRESSED;
   return RIC_OK;
 }
@@ -108,7 +104,7 @@ static ric_status check(const sequence *s, ric_error *error) {
     size_t obstacle = s->obstacles[i];
     if (obstacle >= s->system->obstacle_count)
       return ric_fail(error, RIC_EINVAL, "obstacle %zu, expected one of %zu", obstacle, s->system->obstacle_count);
-    if (is_compliant(s->system, obstacle))
+    if (system_complies(s->system, obstacle))
       return ric_fail(error, RIC_EINVAL, "obstacle %zu is compliant: nothing jumps there", obstacle);
     double rate = ric_system_gap_rate(s->system, obstacle, s->t, s->q, s->u);
     if (!(rate < 0))

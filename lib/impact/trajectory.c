@@ -41,10 +41,15 @@ static ric_status check_options(const ric_trajectory_options *o, ric_error *erro
   return RIC_OK;
 }
 
+/* Obstacles that motions pass need none. */
+static ric_status check_room(const ric_trajectory *tr, ric_error *error) {
+  return tr->options.pass_rigid ? RIC_OK : system_check_room(tr->system, error);
+}
+
 static ric_status build(ric_trajectory *tr, ric_error *error) {
   const ric_system *s = tr->system;
   size_t states = s->coordinates + s->speeds, count = s->obstacle_count;
-  RIC_TRY(system_check_room(s, error));
+  RIC_TRY(check_room(tr, error));
   RIC_TRY(ric_flow_create(s, &tr->options.flow, &tr->flow, error));
   tr->noise = fmax(tr->options.rest_tol, 10 * tr->flow->options.tolerance);
   RIC_TRY(locator_init(&tr->locator, tr->flow, tr->options.grazing_tol, error));
@@ -99,11 +104,12 @@ void ric_trajectory_destroy(ric_trajectory **trajectory) {
 
 static ric_status check_start(const ric_trajectory *tr, double t, const double *q, ric_error *error) {
   const ric_system *s = tr->system;
+  RIC_TRY(check_room(tr, error));
   for (size_t j = 0; j < s->obstacle_count; j++) {
-    double gap = ric_system_gap(s, j, t, q);
+    double gap = contact_is_passed(tr, j) ? 0 : ric_system_gap(s, j, t, q);
     if (isnan(gap))
       return ric_fail(error, RIC_ECALLBACK, "at t = %g: the gap of obstacle %zu could not be evaluated", t, j);
-    if (gap < -tr->options.grazing_tol && !(s->obstacles && s->obstacles[j].stiffness < INFINITY))
+    if (gap < -tr->options.grazing_tol && !system_complies(s, j))
       return ric_fail(error, RIC_EINVAL, "start: the gap of obstacle %zu%s is %g, expected >= 0", j,
                       s->obstacles ? (s->obstacles[j].side > 0 ? " (a floor)" : " (a wall)") : "", gap);
   }
@@ -273,6 +279,7 @@ ric_status ric_trajectory_run(ric_trajectory *tr, double end, const ric_observer
   ric_error local = {0};
   if (!tr->started)
     return ric_fail(error, RIC_EINVAL, "the trajectory has no start");
+  RIC_TRY(flow_check_revision(tr->flow, error));
   if (!(end >= tr->flow->time && end < INFINITY))
     return ric_fail(error, RIC_EINVAL, "end = %g, expected a finite time from t = %g on", end, tr->flow->time);
   *run = (ric_run){.energy_start = energy_now(tr)};

@@ -121,8 +121,11 @@ void contacts_measure(ric_trajectory *tr);
 
 /* The life of a contact (contact.c). */
 
-/** All contacts open and clear of zero, nothing on any list. */
+/** All contacts open and clear of zero, or passed, nothing on any list. */
 void contacts_reset(ric_trajectory *tr);
+
+/** It is rigid and motions go through it, from the start on. */
+bool contact_is_passed(const ric_trajectory *tr, size_t obstacle);
 
 /** It rests or comes to rest. */
 bool contact_persists(const ric_trajectory *tr, size_t obstacle);

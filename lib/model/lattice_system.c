@@ -9,7 +9,7 @@
 typedef struct lattice_system {
   ric_system base;
   ric_lattice lattice;
-  double *masses, *force_cos, *force_sin; /* owned copies, NULL where the lattice has none */
+  double *masses, *force_cos, *force_sin; /* owned, NULL where no lattice of this system has had one */
   ric_spring *on_sites, *links;
 } lattice_system;
 
@@ -143,42 +143,42 @@ static const system_model model = {.rate = rate,
                                    .forced = forced,
                                    .destroy = destroy};
 
-/* Copies an array that may be NULL; false when there is no memory. */
-static bool copy(const void *from, size_t bytes, void **to) {
-  if (!from)
-    return true;
-  *to = malloc(bytes);
-  if (*to)
-    memcpy(*to, from, bytes);
-  return *to != NULL;
+/* Room for an array that may be NULL; there stays what there was. False when there is no memory. */
+static bool reserve_doubles(const double *given, size_t count, double **own) {
+  if (given && !*own)
+    *own = malloc(count * sizeof **own);
+  return !given || *own;
 }
 
-static bool copy_doubles(const double *from, size_t count, double **to) {
-  void *made = NULL;
-  bool ok = copy(from, count * sizeof *from, &made);
-  *to = made;
-  return ok;
+static bool reserve_springs(const ric_spring *given, size_t count, ric_spring **own) {
+  if (given && !*own)
+    *own = malloc(count * sizeof **own);
+  return !given || *own;
 }
 
-static bool copy_springs(const ric_spring *from, size_t count, ric_spring **to) {
-  void *made = NULL;
-  bool ok = copy(from, count * sizeof *from, &made);
-  *to = made;
-  return ok;
+static const double *copy_doubles(const double *given, size_t count, double *own) {
+  return given ? memcpy(own, given, count * sizeof *own) : NULL;
 }
 
-static bool copy_arrays(lattice_system *s) {
-  ric_lattice *l = &s->lattice;
+static const ric_spring *copy_springs(const ric_spring *given, size_t count, ric_spring *own) {
+  return given ? memcpy(own, given, count * sizeof *own) : NULL;
+}
+
+/* Takes a lattice that has been checked; nothing has changed when there is no memory. */
+static ric_status take(lattice_system *s, const ric_lattice *l, ric_error *error) {
   size_t n = l->particles;
-  bool ok = copy_doubles(l->masses, n, &s->masses) && copy_doubles(l->force_cos, n, &s->force_cos) &&
-            copy_doubles(l->force_sin, n, &s->force_sin) && copy_springs(l->on_sites, n, &s->on_sites) &&
-            copy_springs(l->links, n + 1, &s->links);
-  l->masses = s->masses;
-  l->force_cos = s->force_cos;
-  l->force_sin = s->force_sin;
-  l->on_sites = s->on_sites;
-  l->links = s->links;
-  return ok;
+  bool room = reserve_doubles(l->masses, n, &s->masses) && reserve_doubles(l->force_cos, n, &s->force_cos) &&
+              reserve_doubles(l->force_sin, n, &s->force_sin) && reserve_springs(l->on_sites, n, &s->on_sites) &&
+              reserve_springs(l->links, n + 1, &s->links);
+  if (!room)
+    return ric_fail(error, RIC_ENOMEM, "no memory for a lattice of %zu particles", n);
+  s->lattice = *l;
+  s->lattice.masses = copy_doubles(l->masses, n, s->masses);
+  s->lattice.force_cos = copy_doubles(l->force_cos, n, s->force_cos);
+  s->lattice.force_sin = copy_doubles(l->force_sin, n, s->force_sin);
+  s->lattice.on_sites = copy_springs(l->on_sites, n, s->on_sites);
+  s->lattice.links = copy_springs(l->links, n + 1, s->links);
+  return RIC_OK;
 }
 
 ric_status ric_system_create_lattice(const ric_lattice *lattice, const ric_obstacle *obstacles, size_t count,
@@ -190,12 +190,29 @@ ric_status ric_system_create_lattice(const ric_lattice *lattice, const ric_obsta
   if (!s)
     return ric_fail(error, RIC_ENOMEM, "no memory for a lattice of %zu particles", n);
   s->base = (ric_system){.model = &model, .taylor = SYSTEM_LATTICE, .coordinates = n, .speeds = n, .uncoupled = true};
-  s->lattice = *lattice;
   ric_system *made = &s->base;
-  ric_status status = copy_arrays(s) ? system_take_obstacles(made, obstacles, count, error)
-                                     : ric_fail(error, RIC_ENOMEM, "no memory for a lattice of %zu particles", n);
+  ric_status status = take(s, lattice, error);
+  if (status == RIC_OK)
+    status = system_take_obstacles(made, obstacles, count, error);
   if (status != RIC_OK)
     ric_system_destroy(&made);
   *system = made;
   return status;
+}
+
+ric_status ric_system_set_lattice(ric_system *system, const ric_lattice *lattice, ric_error *error) {
+  static const char *const ends[] = {"periodic", "fixed", "free"};
+  if (system->taylor != SYSTEM_LATTICE)
+    return ric_fail(error, RIC_EINVAL, "a lattice for a system of another kind, expected one made of a lattice");
+  RIC_TRY(ric_lattice_check(lattice, error));
+  lattice_system *s = (lattice_system *)(void *)system;
+  if (lattice->particles != s->lattice.particles)
+    return ric_fail(error, RIC_EINVAL, "particles = %zu, expected %zu as the system was made", lattice->particles,
+                    s->lattice.particles);
+  if (lattice->ends != s->lattice.ends)
+    return ric_fail(error, RIC_EINVAL, "ends = %s, expected %s as the system was made", ends[lattice->ends],
+                    ends[s->lattice.ends]);
+  RIC_TRY(take(s, lattice, error));
+  system->revision++;
+  return RIC_OK;
 }

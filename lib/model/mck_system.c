@@ -163,8 +163,8 @@ static const char *mck_energy(const ric_system *base, double t, const double *q,
   return NULL;
 }
 
-static void mck_destroy(ric_system *base) {
-  mck_system *s = (mck_system *)base;
+/* Frees the numbers. */
+static void release(mck_system *s) {
   free(s->mass);
   free(s->inverse);
   free(s->force_cos);
@@ -172,6 +172,11 @@ static void mck_destroy(ric_system *base) {
   mck_rows_clear(&s->damping);
   mck_rows_clear(&s->stiffness);
   mck_rows_clear(&s->springs);
+}
+
+static void mck_destroy(ric_system *base) {
+  mck_system *s = (mck_system *)base;
+  release(s);
   free(s);
 }
 
@@ -197,6 +202,13 @@ static const system_model mck_model = {.rate = mck_rate,
                                        .forced = mck_forced,
                                        .destroy = mck_destroy};
 
+/* Makes the numbers of a model that has been checked; release them whatever the status. */
+static ric_status make(mck_system *s, const ric_mck *mck, ric_error *error) {
+  s->frequency = mck->frequency;
+  RIC_TRY(mck_rows_copy(&s->springs, &mck->stiffness, mck->coordinates, NULL, error));
+  return mck_divide_by_mass(s, mck, error);
+}
+
 ric_status ric_system_create_mck(const ric_mck *mck, const ric_obstacle *obstacles, size_t count, ric_system **system,
                                  ric_error *error) {
   *system = NULL;
@@ -206,14 +218,29 @@ ric_status ric_system_create_mck(const ric_mck *mck, const ric_obstacle *obstacl
     return ric_fail(error, RIC_ENOMEM, "no memory for a system of %zu coordinates", mck->coordinates);
   s->base = (ric_system){
       .model = &mck_model, .taylor = SYSTEM_MCK, .coordinates = mck->coordinates, .speeds = mck->coordinates};
-  s->frequency = mck->frequency;
   ric_status status = system_take_obstacles(&s->base, obstacles, count, error);
   if (status == RIC_OK)
-    status = mck_rows_copy(&s->springs, &mck->stiffness, mck->coordinates, NULL, error);
-  if (status == RIC_OK)
-    status = mck_divide_by_mass(s, mck, error);
+    status = make(s, mck, error);
   *system = &s->base;
   if (status != RIC_OK)
     ric_system_destroy(system);
+  return status;
+}
+
+ric_status ric_system_set_mck(ric_system *system, const ric_mck *mck, ric_error *error) {
+  if (system->taylor != SYSTEM_MCK)
+    return ric_fail(error, RIC_EINVAL,
+                    "an M-C-K model for a system of another kind, expected one made of such a model");
+  RIC_TRY(ric_mck_check(mck, error));
+  if (mck->coordinates != system->coordinates)
+    return ric_fail(error, RIC_EINVAL, "coordinates = %zu, expected %zu as the system was made", mck->coordinates,
+                    system->coordinates);
+  mck_system *s = (mck_system *)system, made = {.base = s->base}, before = *s;
+  ric_status status = make(&made, mck, error);
+  if (status == RIC_OK) {
+    made.base.revision++;
+    *s = made;
+  }
+  release(status == RIC_OK ? &before : &made);
   return status;
 }

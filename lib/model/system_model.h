@@ -10,11 +10,13 @@
 
 #include "ricochet/system.h"
 
-/** State of a contact, kept by the flow: one byte per obstacle. */
+/** State of a contact, kept by the flow: one byte per obstacle. Models and flows tell the second and the third from all
+ *  others. */
 typedef enum contact_state {
-  CONTACT_OPEN,   /* no force */
-  CONTACT_HELD,   /* rigid and persistent: a force lambda keeps the gap at zero */
-  CONTACT_PRESSED /* compliant: Hertz's force acts */
+  CONTACT_OPEN,    /* no force */
+  CONTACT_HELD,    /* rigid and persistent: a force lambda keeps the gap at zero */
+  CONTACT_PRESSED, /* compliant: Hertz's force acts */
+  CONTACT_PASSED   /* rigid, but motions go through it: no force, no events */
 } contact_state;
 
 /** How a unit impulse of a contact acts: speeds change by w, and the gap rate of a motion with speeds u is
@@ -73,6 +75,8 @@ struct ric_system {
   const system_model *model;
   system_taylor taylor;
   size_t coordinates, speeds, obstacle_count;
+  /** Raised whenever numbers of the system change: what was made of them before is stale. */
+  unsigned long long revision;
   /** Obstacles at coordinates, in the order given; NULL for user systems, whose gaps are callbacks. */
   ric_obstacle *obstacles;
   /** Indices of `obstacles` in order of coordinate [obstacle_count]; NULL for user systems. */
@@ -97,6 +101,10 @@ const char *obstacle_gap_rate(const ric_system *s, size_t obstacle, double t, co
 const char *obstacle_gap_acceleration(const ric_system *s, size_t obstacle, double t, const double *q, const double *u,
                                       const double *q_rate, const double *u_rate, double *acceleration);
 double obstacle_restitution(const ric_system *s, size_t obstacle);
+
+static inline bool system_complies(const ric_system *s, size_t obstacle) {
+  return s->obstacles && s->obstacles[obstacle].stiffness < INFINITY;
+}
 
 /** How many obstacles are compliant. */
 size_t system_compliant_obstacles(const ric_system *s);

@@ -11,6 +11,7 @@ ric_status arc_runner_init(arc_runner *r, const ric_system *system, const ric_fl
     return ric_flow_create(system, flow, &r->flow, error);
   ric_trajectory_options options = ric_trajectory_options_default();
   options.flow = *flow;
+  options.pass_rigid = true;
   options.poll = poll;
   return ric_trajectory_create(system, &options, &r->trajectory, error);
 }

@@ -247,6 +247,66 @@ static void following_a_motion_again_allocates_nothing(void **state) {
   ric_system_destroy(&system);
 }
 
+/* A chain with what its trajectory needs, started and run with tangent vectors. */
+static void move_with_tangents(ric_trajectory *trajectory, const double *x, size_t n) {
+  enum { COLUMNS = 4 };
+  static double d[2 * 300 * COLUMNS];
+  ric_run run;
+  for (size_t i = 0; i < 2 * n * COLUMNS; i++)
+    d[i] = i % (COLUMNS + 1) == 0;
+  assert_int_equal(ric_trajectory_start(trajectory, 0, x, x + n, NULL), RIC_OK);
+  assert_int_equal(ric_trajectory_carry(trajectory, COLUMNS, d, d + n * COLUMNS, NULL), RIC_OK);
+  assert_int_equal(ric_trajectory_run(trajectory, 4, NULL, &run, NULL), RIC_OK);
+  assert_int_equal(run.outcome, RIC_RUN_COMPLETED);
+  assert_int_equal(ric_trajectory_columns(trajectory), COLUMNS);
+}
+
+/* Allocations of all but the first two couplings, forth and back. */
+static size_t allocations_of_changes(size_t n, ric_flow_method method, ric_spring link) {
+  double x[2 * 300], forces[300];
+  ric_obstacle floors[300];
+  ric_trajectory_options options = ric_trajectory_options_default();
+  ric_lattice lattice = ric_lattice_default(n, RIC_ENDS_PERIODIC);
+  ric_system *system = NULL;
+  ric_trajectory *trajectory = NULL;
+  size_t before = 0;
+  options.flow.method = method;
+  for (size_t i = 0; i < n; i++) {
+    floors[i] = ric_obstacle_floor(i, -0.5 - 0.01 * (double)(i % 7));
+    floors[i].stiffness = i % 2 ? 100 : INFINITY;
+    forces[i] = 0.1;
+    x[i] = 0.2 + 0.7 * sin((double)(i + 1)) * sin((double)(i + 1));
+    x[n + i] = 0.6 * cos(3.3 * (double)i);
+  }
+  lattice.force_cos = forces;
+  lattice.frequency = 1.1;
+  assert_int_equal(ric_system_create_lattice(&lattice, floors, n, &system, NULL), RIC_OK);
+  assert_int_equal(ric_trajectory_create(system, &options, &trajectory, NULL), RIC_OK);
+  for (int k = 0; k < 6; k++) {
+    if (k == 2)
+      before = allocations;
+    lattice.link = link;
+    lattice.link.linear = 0.1 + 0.05 * (k % 2);
+    floors[0].position = -0.5 - 0.1 * (k % 2);
+    assert_int_equal(ric_system_set_lattice(system, &lattice, NULL), RIC_OK);
+    assert_int_equal(ric_system_set_obstacles(system, floors, n, NULL), RIC_OK);
+    move_with_tangents(trajectory, x, n);
+  }
+  size_t during = allocations - before;
+  ric_trajectory_destroy(&trajectory);
+  ric_system_destroy(&system);
+  return during;
+}
+
+static void moving_with_other_numbers_allocates_nothing(void **state) {
+  (void)state;
+  const ric_spring linear = {0}, nonlinear = {.quadratic = 0.05, .cubic = 0.1, .damping = 0.01};
+  assert_int_equal(allocations_of_changes(9, RIC_FLOW_TAYLOR, linear), 0);
+  assert_int_equal(allocations_of_changes(9, RIC_FLOW_TAYLOR, nonlinear), 0);
+  assert_int_equal(allocations_of_changes(300, RIC_FLOW_TAYLOR, linear), 0);
+  assert_int_equal(allocations_of_changes(9, RIC_FLOW_CVODES, nonlinear), 0);
+}
+
 /* A curve with folds, branch points and test functions, from create on. */
 static ric_status kinked(const double *u, double p, double *F, double *J, double *F_p, void *user, ric_error *error) {
   double a = u[0] - u[1], b = u[0] + p * u[1];
@@ -320,6 +380,7 @@ int main(void) {
       cmocka_unit_test(multipliers_again_allocate_nothing),
       cmocka_unit_test(moving_a_user_system_allocates_nothing),
       cmocka_unit_test(following_a_motion_again_allocates_nothing),
+      cmocka_unit_test(moving_with_other_numbers_allocates_nothing),
       cmocka_unit_test(following_a_curve_allocates_nothing),
       cmocka_unit_test(memory_is_what_was_estimated),
   };

@@ -50,12 +50,16 @@ RIC_API ric_status ric_flow_create(const ric_system *system, const ric_flow_opti
                                    ric_error *error);
 RIC_API void ric_flow_destroy(ric_flow **flow);
 
-/** Sets time and state; forgets all history. @param q, u  [n], [m], copied; finite, else RIC_EINVAL. */
+/** Sets time and state; forgets all history, and takes over the system's numbers if they have changed (system.h): other
+ *  numbers of the same structure cost O(n) and no memory, new nonlinear, damping or forcing terms are made room for.
+ *  @param q, u  [n], [m], copied; finite, else RIC_EINVAL
+ *  @returns RIC_ENOMEM. */
 RIC_API ric_status ric_flow_start(ric_flow *flow, double t, const double *q, const double *u, ric_error *error);
 
 /** Makes a step from the current state towards `stop` and not beyond, backwards when stop lies before the time.
- *  @returns RIC_EINVAL for a stop that is the flow's time; RIC_ENUMERIC when the motion blows up or the integrator
- * gives up, RIC_ECALLBACK; time and state stay those before the step. */
+ *  @returns RIC_EINVAL for a stop that is the flow's time, and for a system that has changed since the start;
+ *           RIC_ENUMERIC when the motion blows up or the integrator gives up, RIC_ECALLBACK; time and state stay those
+ *           before the step. */
 RIC_API ric_status ric_flow_step(ric_flow *flow, double stop, ric_error *error);
 
 /** Pieces of the step, and one of them; its coefficients stay valid until the next call for a piece. */
@@ -73,9 +77,10 @@ RIC_API const double *ric_flow_u(const ric_flow *flow); /* [m] */
 /** Tangent vectors that move along with the state from now on: for a state x(t; p) that depends on parameters p, the
  *  columns of dx/dp. They follow the linearised motion, contacts in their present states; jumps at impacts are for
  *  trajectories to make. With taylor by the recurrence of the state, O(n) per column and step on a lattice; with cvodes
- *  by its forward sensitivity analysis, at the tolerance of the flow. ric_flow_start ends it.
+ *  by its forward sensitivity analysis, at the tolerance of the flow. ric_flow_start ends it; as many vectors as before
+ *  then take no new memory.
  *  @param dq, du  [n][columns], [m][columns] row-major, copied; du NULL where m = 0; columns 0: none any more
- *  @returns RIC_EINVAL for values that are not finite, RIC_ENOMEM. */
+ *  @returns RIC_EINVAL for values that are not finite and for a system that has changed since the start; RIC_ENOMEM. */
 RIC_API ric_status ric_flow_carry(ric_flow *flow, size_t columns, const double *dq, const double *du, ric_error *error);
 RIC_API size_t ric_flow_columns(const ric_flow *flow);
 RIC_API const double *ric_flow_dq(const ric_flow *flow); /* [n][columns], valid until the next accept, carry or start */

@@ -29,6 +29,26 @@ RIC_API ric_status ric_system_create_first_order(const ric_first_order *model, r
 RIC_API ric_status ric_system_create_chain(const ric_chain *chain, ric_system **system, ric_error *error);
 RIC_API void ric_system_destroy(ric_system **system);
 
+/** Other numbers for a system, in place: flows and trajectories on it take them over with their next start. The system
+ *  must not change during a motion: steps, runs and tangent vectors are refused until there is a new start. On failure
+ *  nothing has changed.
+ *
+ *  The numbers of a lattice, copied. Allocates nothing when no optional array is given that was never given before.
+ *  @returns RIC_EINVAL as for a new lattice, for another number of particles or other ends than at creation, and for a
+ *           system that is no lattice; RIC_ENOMEM. */
+RIC_API ric_status ric_system_set_lattice(ric_system *system, const ric_lattice *lattice, ric_error *error);
+
+/** The same for an M-C-K system; matrices may change their form, and a mass matrix is factorised again. Allocates.
+ *  @returns RIC_EINVAL as for a new one, for another number of coordinates, and for any other system; RIC_ENOMEM. */
+RIC_API ric_status ric_system_set_mck(ric_system *system, const ric_mck *mck, ric_error *error);
+
+/** The same for the obstacles of a lattice or an M-C-K system: position, restitution, and the stiffness of
+ *  compliant ones, may change; coordinate, side and whether an obstacle is rigid may not. Allocates nothing.
+ *  @param obstacles  [count], may be NULL for none
+ *  @returns RIC_EINVAL naming the obstacle, and for another count or a user system. */
+RIC_API ric_status ric_system_set_obstacles(ric_system *system, const ric_obstacle *obstacles, size_t count,
+                                            ric_error *error);
+
 RIC_API size_t ric_system_coordinates(const ric_system *system); /* n */
 RIC_API size_t ric_system_speeds(const ric_system *system);      /* m */
 RIC_API size_t ric_system_obstacles(const ric_system *system);

@@ -10,6 +10,7 @@
 #ifndef RICOCHET_TRAJECTORY_H
 #define RICOCHET_TRAJECTORY_H
 
+#include <stdbool.h>
 #include <stddef.h>
 
 #include "event.h"
@@ -57,7 +58,9 @@ typedef struct ric_trajectory_options {
   double rest_tol;        /* 1e-13 (at least ten times the flow's tolerance): gap rates below it, relative to 1 + the
                              largest speed, are zero, and so are gaps below it */
   double events_per_time; /* 1e5: events at more times than this within a unit of time end the run */
-  ric_poll poll;          /* asked at every step */
+  bool pass_rigid; /* rigid obstacles, users' among them, let every motion pass as if they were not there, and only
+                      compliant ones act; default false */
+  ric_poll poll;   /* asked at every step */
 } ric_trajectory_options;
 
 RIC_API ric_trajectory_options ric_trajectory_options_default(void);
@@ -77,22 +80,26 @@ typedef struct ric_trajectory ric_trajectory;
 
 /** @param system  borrowed, must outlive the trajectory
  *  @param options  copied, NULL for the defaults; checked here
- *  @returns RIC_EINVAL, also for a coordinate whose rigid floor and wall leave no room; RIC_ENOMEM. */
+ *  @returns RIC_EINVAL, also for a coordinate whose rigid floor and wall leave no room, unless motions pass them;
+ *           RIC_ENOMEM. */
 RIC_API ric_status ric_trajectory_create(const ric_system *system, const ric_trajectory_options *options,
                                          ric_trajectory **trajectory, ric_error *error);
 RIC_API void ric_trajectory_destroy(ric_trajectory **trajectory);
 
-/** Sets time and state [n], [m] (u NULL where m = 0); forgets the history. Closed contacts are looked at when the run
- *  goes on: those that move in hit at once, those that are pushed in rest.
+/** Sets time and state [n], [m] (u NULL where m = 0); forgets the history, and takes over the system's numbers if they
+ *  have changed (system.h). Closed contacts are looked at when the run goes on: those that move in hit at once, those
+ *  that are pushed in rest.
  *  @returns RIC_EINVAL for a state that is not finite or lies below a rigid obstacle by more than grazing_tol, naming
- *           the obstacle and the gap. */
+ *           the obstacle and the gap, and for obstacles that leave no room since they have changed, unless motions pass
+ *           them; RIC_ENOMEM. */
 RIC_API ric_status ric_trajectory_start(ric_trajectory *trajectory, double t, const double *q, const double *u,
                                         ric_error *error);
 
 /** Moves on to time `end`. Can be called again to go on, also after an event limit or the observer's end.
  *  @param observer  NULL for none
  *  @param run  what happened; every outcome is RIC_OK
- *  @returns RIC_EINVAL for an end before the time reached or not finite, or without a start; RIC_ESTOPPED. */
+ *  @returns RIC_EINVAL for an end before the time reached or not finite, without a start, or for a system that has
+ *           changed since; RIC_ESTOPPED. */
 RIC_API ric_status ric_trajectory_run(ric_trajectory *trajectory, double end, const ric_observer *observer,
                                       ric_run *run, ric_error *error);
 
@@ -109,7 +116,8 @@ RIC_API int ric_trajectory_rests(const ric_trajectory *trajectory, size_t obstac
  *  impact if there is one; they are lost, and a further run goes on without them. Call it between start and run, or
  * between runs; ric_trajectory_start ends it.
  *  @param dq, du  [n][columns], [m][columns] row-major, copied; du NULL where m = 0; columns 0: none any more
- *  @returns RIC_EINVAL for values that are not finite, or without a start; RIC_ENOMEM. */
+ *  @returns RIC_EINVAL for values that are not finite, without a start, or for a system that has changed since;
+ *           RIC_ENOMEM. */
 RIC_API ric_status ric_trajectory_carry(ric_trajectory *trajectory, size_t columns, const double *dq, const double *du,
                                         ric_error *error);
 RIC_API size_t ric_trajectory_columns(const ric_trajectory *trajectory);   /* 0 when they were lost */
