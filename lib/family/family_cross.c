@@ -163,18 +163,23 @@ static ric_status soundness(ric_family *f, const double *z, double parameter, do
 }
 
 /* Which way along a tangent [n + 1] a family becomes sound: its sign, 0 where it does not tell. */
-static ric_status find_side(ric_family *f, const double *z, const double *t, double parameter, double second,
-                            double *beside, int *sign, ric_error *error) {
-  double value[2];
+static ric_status find_side(ric_family *f, const double *z, const double *t, double parameter, double second, int *sign,
+                            ric_error *error) {
+  double value[2] = {0, 0};
   size_t n = f->unknowns;
-  for (int k = 0; k < 2; k++) {
+  ric_status status = RIC_OK;
+  double *beside = malloc(n * sizeof *beside);
+  if (!beside)
+    return ric_fail(error, RIC_ENOMEM, "no memory for %zu unknowns", n);
+  for (int k = 0; k < 2 && status == RIC_OK; k++) {
     double step = k ? feeler : -feeler;
     for (size_t i = 0; i < n; i++)
       beside[i] = z[i] + step * t[i];
-    RIC_TRY(soundness(f, beside, parameter + step * t[n], second, &value[k], error));
+    status = soundness(f, beside, parameter + step * t[n], second, &value[k], error);
   }
   *sign = value[1] > value[0] ? 1 : value[1] < value[0] ? -1 : 0;
-  return RIC_OK;
+  free(beside);
+  return status;
 }
 
 static int sign_of(double x) {
@@ -184,22 +189,20 @@ static int sign_of(double x) {
 static ric_status find_sides(crossing *c) {
   ric_family_junction *j = c->junction;
   ric_family *f = j->family;
+  const ric_family_point *point = c->point;
   size_t n = f->unknowns;
-  double p = c->point->parameter, second = c->problem.second, *beside = j->z + n + 1;
+  double p = point->parameter, second = c->problem.second;
   int sign;
   RIC_TRY(family_null_vectors(f, j->z, 1, j->tangent, c->error));
-  RIC_TRY(find_side(f, j->z, j->tangent, p, second, beside, &sign, c->error));
+  RIC_TRY(find_side(f, j->z, j->tangent, p, second, &sign, c->error));
   for (size_t i = 0; i <= n && sign < 0; i++)
     j->tangent[i] = -j->tangent[i];
-  j->parameter = p;
   j->side = fabs(j->tangent[n]) > 1e-12 ? sign_of(j->tangent[n]) : 0;
-  double *kept = malloc(c->from->unknowns * sizeof *kept);
-  if (!kept)
-    return ric_fail(c->error, RIC_ENOMEM, "no memory for %zu unknowns", c->from->unknowns);
-  ric_status status = find_side(c->from, c->point->z, c->point->tangent, p, second, kept, &sign, c->error);
-  free(kept);
-  j->other_side = sign * sign_of(c->point->tangent[c->from->unknowns]);
-  return status;
+  family_forget(c->from); /* the other one has changed the system */
+  RIC_TRY(find_side(c->from, point->z, point->tangent, p, second, &sign, c->error));
+  j->other_side = sign * sign_of(point->tangent[c->from->unknowns]);
+  family_forget(f);
+  return RIC_OK;
 }
 
 ric_status ric_family_cross(ric_family *family, const ric_family_point *point, ric_family_junction *junction,
@@ -210,8 +213,10 @@ ric_status ric_family_cross(ric_family *family, const ric_family_point *point, r
   if (point->kind != RIC_FAMILY_GRAZING && point->kind != RIC_FAMILY_IMPACT_LOST)
     return ric_fail(error, RIC_EINVAL, "point = %s, expected grazing or impact_lost",
                     ric_family_kind_name(point->kind));
-  c.period = point->orbit->period;
-  ric_status status = reserve(&c);
+  c.period = arcs_period(&family->shooting->arcs, point->z, point->given);
+  ric_status status = family_set(family, point->parameter, family->problem.second, error);
+  if (status == RIC_OK)
+    status = reserve(&c);
   gsl_error_handler_t *handler = gsl_set_error_handler_off();
   if (status == RIC_OK) {
     copy_impacts(&c);
@@ -226,7 +231,7 @@ ric_status ric_family_cross(ric_family *family, const ric_family_point *point, r
   if (status == RIC_OK)
     status = find_sides(&c);
   gsl_set_error_handler(handler);
-  family_forget(family);
+  family_show_again(family, point);
   if (status != RIC_OK)
     ric_family_junction_clear(junction);
   free(c.start);

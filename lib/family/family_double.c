@@ -56,7 +56,10 @@ static ric_status find_tangent(ric_family_junction *j, ric_error *error) {
 
 ric_status ric_family_double(ric_family *family, const ric_family_point *point, ric_family_junction *junction,
                              ric_error *error) {
-  doubling d = {.from = family, .point = point, .problem = family->problem, .period = point->orbit->period};
+  doubling d = {.from = family,
+                .point = point,
+                .problem = family->problem,
+                .period = arcs_period(&family->shooting->arcs, point->z, point->given)};
   *junction = (ric_family_junction){0};
   if (point->kind != RIC_FAMILY_PERIOD_DOUBLING || family->problem.motion.kind == RIC_MOTION_EVEN)
     return ric_fail(error, RIC_EINVAL, "point = %s of %s motion, expected period_doubling of one that is not even",
@@ -66,12 +69,15 @@ ric_status ric_family_double(ric_family *family, const ric_family_point *point, 
     return ric_fail(error, RIC_EINVAL, "a family along its period, expected one along a number of the system");
   family_forget(family);
   gsl_error_handler_t *handler = gsl_set_error_handler_off();
-  ric_status status = repeat(&d, error);
+  ric_status status = family_set(family, point->parameter, family->problem.second, error);
+  if (status == RIC_OK)
+    status = repeat(&d, error);
   if (status == RIC_OK)
     status = family_branch(&d.problem, family, point, point->z, d.times, 2 * d.period, junction, error);
   if (status == RIC_OK)
     status = find_tangent(junction, error);
   gsl_set_error_handler(handler);
+  family_forget(family);
   if (status != RIC_OK)
     ric_family_junction_clear(junction);
   free(d.sequence);

@@ -41,6 +41,9 @@ ric_status family_set(ric_family *f, double first, double second, ric_error *err
 /** Others may have changed the system: forgets what is in it. */
 void family_forget(ric_family *f);
 
+/** The orbit that a point shows is the family's own, and others have been looked at: fills it once more. */
+void family_show_again(ric_family *f, const ric_family_point *point);
+
 /** Null vectors of (J, F_p) [unknowns + 1] at z: the `count` last singular vectors. Errors handled by GSL must be off.
  *  @returns RIC_ENUMERIC when there are more of them */
 ric_status family_null_vectors(ric_family *f, const double *z, size_t count, double *vectors, ric_error *error);

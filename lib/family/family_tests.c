@@ -159,7 +159,17 @@ static bool is_touch(const ric_family *f, const double *z, size_t which) {
   return acceleration >= 0;
 }
 
+/* Beyond the loss of an impact the gap has a minimum beside it that comes out of zero: that is not another contact. */
+static bool is_impact_lost(const ric_family *f, size_t obstacle) {
+  for (size_t k = 0; k < f->orbit.impacts; k++)
+    if (f->orbit.impact_obstacle[k] == obstacle && fabs(f->orbit.gap_rate[k]) < rounding)
+      return true;
+  return false;
+}
+
 static void name_touch(const ric_family *f, const gap_found *gap, ric_family_point *point) {
+  if (is_impact_lost(f, gap->obstacle))
+    return;
   point->kind = RIC_FAMILY_GRAZING;
   point->obstacle = gap->obstacle;
   point->time = fmod(gap->time, f->orbit.period);

@@ -21,6 +21,7 @@ typedef struct tracer {
   double unit;         /* psi is measured in it */
   double *z, *J, *F_p; /* [n], [n][n], [n] */
   double *F;           /* [n] */
+  double *slopes;      /* [n + 2] of psi */
   gsl_permutation *order;
   int (*seen)(const ric_family_curve_point *point, void *user);
   void *user;
@@ -94,7 +95,9 @@ static ric_status residual(const double *u, double p, double *F, double *J, doub
     J[i * size + n] = t->F_p[i];
   }
   RIC_TRY(family_residual(f, u, 1, F, t->J, F_p, error));
-  RIC_TRY(gradient(t, u, first, p, J + n * size, error));
+  RIC_TRY(gradient(t, u, first, p, t->slopes, error));
+  memcpy(J + n * size, t->slopes, size * sizeof *J);
+  F_p[n] = t->slopes[size];
   return psi(t, u, first, p, &F[n], error);
 }
 
@@ -187,7 +190,7 @@ static ric_status walk(tracer *t, const ric_family_point *point, const ric_curve
   RIC_TRY(choose(t, point));
   memcpy(u, point->z, n * sizeof *u);
   u[n] = point->parameter;
-  RIC_TRY(choose_unit(t, point->z, point->parameter, t->f->problem.second, u + n + 1));
+  RIC_TRY(choose_unit(t, point->z, point->parameter, t->f->problem.second, t->slopes));
   RIC_TRY(ric_curve_create(&problem, options, &curve, t->error));
   ric_status status = ric_curve_follow(curve, u, t->f->problem.second, NULL, show, t, run, t->error);
   ric_curve_destroy(&curve);
@@ -211,12 +214,13 @@ ric_status ric_family_trace(ric_family *f, const ric_family_point *point, const 
     t.F = t.J + n * n;
     t.F_p = t.F + n;
     t.z = t.F_p + n;
+    t.slopes = t.z + n;
     gsl_error_handler_t *handler = gsl_set_error_handler_off();
-    status = walk(&t, point, options ? options : &f->options.curve, run, t.z + n);
+    status = walk(&t, point, options ? options : &f->options.curve, run, t.slopes + n + 2);
     gsl_set_error_handler(handler);
   } else
     (void)ric_fail(error, RIC_ENOMEM, "no memory for a curve of %zu unknowns", n + 1);
-  family_forget(f);
+  family_show_again(f, point);
   gsl_permutation_free(t.order);
   free(t.J);
   return status;

@@ -1,10 +1,14 @@
 /* Where families meet: what the ways over to another one share. */
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include <gsl/gsl_linalg.h>
 
 #include "family_parts.h"
+
+/* First step into another family. Multipliers grow without bound towards a touch, and special points crowd there. */
+static const double first_step = 1e-3;
 
 /* Singular values below it, over the largest, are zero. */
 static const double singular_tol = 1e-7;
@@ -16,11 +20,20 @@ void ric_family_junction_clear(ric_family_junction *junction) {
   *junction = (ric_family_junction){0};
 }
 
+void family_show_again(ric_family *f, const ric_family_point *point) {
+  family_forget(f);
+  if (family_set(f, point->parameter, f->problem.second, NULL) == RIC_OK)
+    (void)family_look(f, point->z, NULL);
+  family_forget(f);
+}
+
 ric_status family_branch(const ric_family_problem *problem, const ric_family *from, const ric_family_point *point,
                          const double *x, const double *times, double period, ric_family_junction *junction,
                          ric_error *error) {
   size_t n = from->shooting->arcs.coordinates;
-  RIC_TRY(ric_family_create(problem, &from->options, &junction->family, error));
+  ric_family_options options = from->options;
+  options.curve.step = fmin(options.curve.step, fmax(first_step, options.curve.step_least));
+  RIC_TRY(ric_family_create(problem, &options, &junction->family, error));
   size_t unknowns = junction->family->unknowns;
   junction->z = calloc(unknowns, sizeof *junction->z);
   junction->tangent = calloc(unknowns + 1, sizeof *junction->tangent);
