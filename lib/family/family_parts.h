@@ -11,6 +11,7 @@ typedef enum family_test {
   TEST_MINUS_ONE,
   TEST_MINUS_ONE_TOO,
   TEST_BREAKING,
+  TEST_ENERGY,
   TEST_TORUS,
   TEST_THIRD,
   TEST_FOURTH,

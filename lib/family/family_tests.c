@@ -7,6 +7,9 @@
 
 /* Imaginary parts below it, relative to 1 + the modulus, are rounding: of eigenvalues that symmetry makes coincide. */
 static const double rounding = 1e-6;
+/* Two alpha of the n x n block this near, relative to 1 + the modulus, coincide by a symmetry; those of pairs that meet
+ * are rarely nearer than the root of rounding. */
+static const double coincidence = 1e-11;
 
 /* --- the motion --------------------------------------------------------------------------------------------------- */
 
@@ -44,21 +47,54 @@ static size_t alpha_count(const ric_family *f) {
   return f->problem.motion.kind == RIC_MOTION_EVEN ? f->shooting->spectrum->even.count : f->multipliers.count;
 }
 
+/* Of multipliers mu and 1/mu one stands for both. */
+static bool stands_for_pair(const ric_family *f, size_t k) {
+  if (f->problem.motion.kind == RIC_MOTION_EVEN)
+    return true;
+  ric_complex mu = f->multipliers.mu[k];
+  double outside = hypot(mu.re, mu.im) - 1;
+  return outside > rounding || (outside > -rounding && mu.im > 0);
+}
+
+/* Two pairs. */
+typedef struct meeting {
+  double apart; /* distance of their alpha */
+  double place; /* real part */
+} meeting;
+
+/* The two that are nearest to each other, but for those that a symmetry makes coincide; and the largest imaginary part.
+ */
+static meeting nearest_two(const ric_family *f, double *across) {
+  meeting m = {INFINITY, NAN};
+  *across = 0;
+  for (size_t i = 0; i < alpha_count(f); i++) {
+    double complex a = alpha_of(f, i);
+    double same = coincidence * (1 + cabs(a) + f->multipliers.largest / 1000);
+    if (!stands_for_pair(f, i))
+      continue;
+    if (fabs(cimag(a)) > same)
+      *across = fmax(*across, fabs(cimag(a)));
+    for (size_t j = 0; j < i; j++) {
+      double apart = cabs(a - alpha_of(f, j));
+      if (stands_for_pair(f, j) && apart > same && apart < m.apart)
+        m = (meeting){apart, creal(a)};
+    }
+  }
+  return m;
+}
+
 /* Smallest distance of two different ones, squared, or minus the largest imaginary part, squared: the discriminant of
  * the two that meet, linear where they do. */
 static double collision(const ric_family *f) {
-  double nearest = INFINITY, across = 0;
-  for (size_t i = 0; i < alpha_count(f); i++) {
-    double complex a = alpha_of(f, i);
-    if (fabs(cimag(a)) > rounding * (1 + cabs(a)))
-      across = fmax(across, cimag(a) * cimag(a));
-    for (size_t j = 0; j < i; j++) {
-      double apart = cabs(a - alpha_of(f, j));
-      if (apart > rounding * (1 + cabs(a)))
-        nearest = fmin(nearest, apart * apart);
-    }
-  }
-  return across > 0 ? -across : isfinite(nearest) ? nearest : NAN;
+  double across;
+  meeting m = nearest_two(f, &across);
+  return across > 0 ? -across * across : isfinite(m.apart) ? m.apart * m.apart : NAN;
+}
+
+/* Of the two that meet, whether they leave the circle. */
+static bool meets_on_circle(const ric_family *f) {
+  double across;
+  return fabs(nearest_two(f, &across).place) < 1;
 }
 
 /* Largest modulus of complex multipliers, minus 1. */
@@ -88,7 +124,11 @@ static void tests_of_multipliers(ric_family *f, double *values) {
     values[k] = NAN;
   if (!knows_multipliers(f))
     return;
-  shooting_spectrum_tests(f->shooting, &values[TEST_MINUS_ONE], &values[TEST_BREAKING]);
+  spectrum_tests t = shooting_spectrum_tests(f->shooting);
+  values[TEST_MINUS_ONE] = t.minus_one[0];
+  values[TEST_MINUS_ONE_TOO] = t.minus_one[1];
+  values[TEST_BREAKING] = t.breaking;
+  values[TEST_ENERGY] = t.energy;
   values[TEST_TORUS] = has_pairs(f) ? collision(f) : torus(f);
   if (f->problem.motion.kind != RIC_MOTION_EVEN)
     return;
@@ -177,22 +217,6 @@ static void name_touch(const ric_family *f, const gap_found *gap, ric_family_poi
     point->time += f->orbit.period;
 }
 
-/* Of the two alpha that meet, whether they leave the circle. */
-static bool meets_on_circle(const ric_family *f) {
-  double nearest = INFINITY, place = NAN;
-  for (size_t i = 0; i < alpha_count(f); i++)
-    for (size_t j = 0; j < i; j++) {
-      double complex a = alpha_of(f, i), b = alpha_of(f, j);
-      double apart = cabs(a - b);
-      bool symmetric = apart <= 1e-12 * (1 + cabs(a));
-      if (!symmetric && apart < nearest) {
-        nearest = apart;
-        place = creal(a);
-      }
-    }
-  return fabs(place) < 1;
-}
-
 static void name_impact(const ric_family *f, const double *z, size_t which, ric_family_point *point) {
   point->kind = is_touch(f, z, which) ? RIC_FAMILY_IMPACT_LOST : RIC_FAMILY_IMPULSE_SIGN;
   point->obstacle = f->orbit.impact_obstacle[which];
@@ -224,6 +248,9 @@ void family_name_zero(ric_family *f, const double *z, size_t test, ric_family_po
     return;
   case TEST_BREAKING:
     point->kind = RIC_FAMILY_SYMMETRY_BREAKING;
+    return;
+  case TEST_ENERGY:
+    point->kind = RIC_FAMILY_ENERGY_EXTREME;
     return;
   case TEST_TORUS:
     point->kind = !has_pairs(f) || meets_on_circle(f) ? RIC_FAMILY_TORUS : RIC_FAMILY_REGULAR;

@@ -43,14 +43,12 @@ static ric_status determinant(tracer *t, const double *z, double *value, ric_err
 
 static ric_status psi(tracer *t, const double *z, double first, double second, double *value, ric_error *error) {
   ric_family *f = t->f;
-  double both[2], breaking;
   RIC_TRY(family_set(f, first, second, error));
   if (t->kind == RIC_FAMILY_FOLD) {
     RIC_TRY(determinant(t, z, value, error));
   } else if (t->kind == RIC_FAMILY_PERIOD_DOUBLING) {
     RIC_TRY(shooting_matrix(f->shooting, z, f->given, error));
-    shooting_spectrum_tests(f->shooting, both, &breaking);
-    *value = both[t->which];
+    *value = shooting_spectrum_tests(f->shooting).minus_one[t->which];
   } else {
     RIC_TRY(ric_shooting_orbit(f->shooting, z, f->given, &f->orbit, error));
     const shooting_gaps *g = f->shooting->gaps;
@@ -126,10 +124,9 @@ static int show(const ric_curve_point *c, void *user) {
 /* --- the start ---------------------------------------------------------------------------------------------------- */
 
 static ric_status choose_multiplier(tracer *t, const ric_family_point *point) {
-  double both[2], breaking;
   RIC_TRY(shooting_matrix(t->f->shooting, point->z, t->f->given, t->error));
-  shooting_spectrum_tests(t->f->shooting, both, &breaking);
-  t->which = fabs(both[1]) < fabs(both[0]) ? 1 : 0;
+  spectrum_tests tests = shooting_spectrum_tests(t->f->shooting);
+  t->which = fabs(tests.minus_one[1]) < fabs(tests.minus_one[0]) ? 1 : 0;
   return RIC_OK;
 }
 

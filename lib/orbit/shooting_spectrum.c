@@ -221,14 +221,14 @@ static double determinant_of_block(const ric_shooting *s, size_t row, size_t col
   return determinant(k, n);
 }
 
-/* B takes the a-part of the motion's rates at the start to zero, and so does its transpose with that at T/2. */
-static double determinant_of_breaking(const ric_shooting *s) {
+/* An n x n block bordered by the a-parts of the motion's rates, at T/2 on the right and at the start below. B takes the
+ * latter to zero and its transpose the former; C takes s to -f_half dT/2 for a neighbouring motion of the period T +
+ * dT. */
+static double determinant_of_bordered(const ric_shooting *s, size_t row, size_t column) {
   const shooting_spectrum *k = s->spectrum;
   size_t n = s->arcs.coordinates;
-  if (!is_free(s))
-    return determinant_of_block(s, 0, n);
   for (size_t i = 0; i < n; i++) {
-    memcpy(gsl_matrix_ptr(k->bordered, i, 0), entry(k, i, n), n * sizeof(double));
+    memcpy(gsl_matrix_ptr(k->bordered, i, 0), entry(k, row + i, column), n * sizeof(double));
     gsl_matrix_set(k->bordered, i, n, k->half[n + i]);
     gsl_matrix_set(k->bordered, n, i, k->start[n + i]);
   }
@@ -236,24 +236,31 @@ static double determinant_of_breaking(const ric_shooting *s) {
   return determinant(k, n + 1);
 }
 
-void shooting_spectrum_tests(ric_shooting *s, double *minus_one, double *breaking) {
-  const shooting_spectrum *k = s->spectrum;
+static void even_tests(ric_shooting *s, spectrum_tests *t) {
   size_t n = s->arcs.coordinates;
-  minus_one[0] = minus_one[1] = *breaking = NAN;
+  t->minus_one[0] = determinant_of_block(s, 0, 0);
+  t->minus_one[1] = determinant_of_block(s, n, n);
+  t->breaking = is_free(s) ? determinant_of_bordered(s, 0, n) : determinant_of_block(s, 0, n);
+  if (is_free(s))
+    t->energy = determinant_of_bordered(s, n, 0);
+}
+
+spectrum_tests shooting_spectrum_tests(ric_shooting *s) {
+  const shooting_spectrum *k = s->spectrum;
+  spectrum_tests t = {{NAN, NAN}, NAN, NAN};
   if (k->grazing)
-    return;
+    return t;
   gsl_error_handler_t *handler = gsl_set_error_handler_off();
   if (is_even(s)) {
-    minus_one[0] = determinant_of_block(s, 0, 0);
-    minus_one[1] = determinant_of_block(s, n, n);
-    *breaking = determinant_of_breaking(s);
+    even_tests(s, &t);
   } else {
     memcpy(k->bordered->data, k->matrix, k->size * k->size * sizeof *k->matrix);
     for (size_t i = 0; i < k->size; i++)
       *gsl_matrix_ptr(k->bordered, i, i) += 1;
-    minus_one[0] = determinant(k, k->size);
+    t.minus_one[0] = determinant(k, k->size);
   }
   gsl_set_error_handler(handler);
+  return t;
 }
 
 static size_t trivial_of(const ric_shooting *s) {

@@ -43,9 +43,14 @@ ric_status shooting_matrix(ric_shooting *s, const double *z, double given, ric_e
 ric_status shooting_multipliers(ric_shooting *s, const ric_multiplier_options *options, ric_multipliers *m,
                                 ric_error *error);
 
-/** Test functions at the matrix found, smooth along a family, with simple zeros.
- *  @param minus_one  [2] multipliers -1: determinants of A and D; of M + 1, and NaN
- *  @param breaking  of even motions the determinant of B, the motion taken out; NaN of others */
-void shooting_spectrum_tests(ric_shooting *s, double *minus_one, double *breaking);
+/** Test functions, smooth along a family, with simple zeros; NaN where there are none. */
+typedef struct spectrum_tests {
+  double minus_one[2]; /* multipliers -1: determinants of A and D; of M + 1, and NaN */
+  double breaking;     /* even motions: the determinant of B, the motion taken out */
+  double energy;       /* even motions without forcing: dE/dT, as the bordered determinant of C */
+} spectrum_tests;
+
+/** Those of the matrix found. */
+spectrum_tests shooting_spectrum_tests(ric_shooting *s);
 
 #endif
