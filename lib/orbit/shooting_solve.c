@@ -139,11 +139,11 @@ static ric_status run(search *k, double tolerance, int *iterations, ric_error *e
     return RIC_OK;
   if (k->status != RIC_OK && k->status != RIC_ENUMERIC)
     return k->status;
+  if (code == KIN_FIRST_SYSFUNC_ERR)
+    return RIC_ENUMERIC;            /* with the residual's own words */
   KINGetFuncNorm(k->memory, &left); /* Euclidean, scaled: not below the largest entry */
   if (left <= rounding * tolerance)
     return RIC_OK;
-  if (code == KIN_FIRST_SYSFUNC_ERR)
-    return RIC_ENUMERIC; /* with the residual's own words */
   return ric_fail(error, RIC_ENUMERIC, "shooting does not converge in %d steps: %s; the residual is %.3g", *iterations,
                   text_of(code), left);
 }
