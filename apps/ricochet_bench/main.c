@@ -66,15 +66,15 @@ static int scaling(const benchmark *b) {
   return bench_scaling() || fflush(stdout) != 0;
 }
 
-enum { LISTS = 4 };
+enum { LISTS = 5 };
 static const benchmark *const lists[LISTS] = {benchmarks, trajectory_benchmarks, multiplier_benchmarks,
-                                              continuation_benchmarks};
+                                              continuation_benchmarks, family_benchmarks};
 
 static void list(void) {
   for (size_t l = 0; l < LISTS; l++)
     for (const benchmark *b = lists[l]; b->name; b++)
-      printf("  %-18s %s\n", b->name, b->what);
-  printf("  %-18s %s\n", "scaling", "growth of time with n from 1e3 to 1e6");
+      printf("  %-24s %s\n", b->name, b->what);
+  printf("  %-24s %s\n", "scaling", "growth of time with n from 1e3 to 1e6");
 }
 
 static int wanted(const char *name, int argc, char **argv) {
