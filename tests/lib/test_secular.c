@@ -39,7 +39,7 @@ static double complex log_product(const prepared *p, double complex alpha) {
   size_t n = p->s.chain.particles;
   double complex sum = 0;
   for (size_t i = 0; i + 1 < n; i++)
-    sum += clog(alpha - CMPLX(p->solver->reduced.alpha[i].re, p->solver->reduced.alpha[i].im));
+    sum += clog(alpha - CMPLX(p->solver->reduced.spectrum.alpha[i].re, p->solver->reduced.spectrum.alpha[i].im));
   for (size_t j = 0; j < n; j++)
     sum -= clog(alpha - cos(p->solver->secular.poles[j].angle));
   return sum;
@@ -73,7 +73,8 @@ static void counts_on_the_circle_and_outside_are_those_of_the_eigenvalues(void *
     const double radius = 0.01;
     assert_int_equal(reduced_compute(&p.solver->reduced, &p.s.chain, &p.solver->kicks, &p.orbit, NULL), RIC_OK);
     for (size_t k = 0; k + 1 < n; k++) {
-      double complex root = cacosh(CMPLX(p.solver->reduced.alpha[k].re, p.solver->reduced.alpha[k].im));
+      double complex root =
+          cacosh(CMPLX(p.solver->reduced.spectrum.alpha[k].re, p.solver->reduced.spectrum.alpha[k].im));
       beyond += fabs(creal(root)) > radius;
     }
     assert_true(winding_outside(&p.solver->secular, radius, &outside));
