@@ -72,6 +72,32 @@ STUDIES = {
     "resting": DRIVEN.format(n=1, force="[7]", sweep="values: [7, 5.5, 4.5]")
     .replace("stiffness: 0", "stiffness: 1")
     .replace("wall: 1", "wall: null"),
+    "branch": """kind: branch
+title: through grazing
+model: {type: chain, particles: 1, ends: free, gamma: 0, floor: null, wall: 1, restitution: 0.8, damping: 0.1,
+        force: 0.05, frequency: 1}
+orbit: {motion: forced}
+branch: {parameter: model.force, from: 0.05, to: 0.2, cross: true}
+""",
+    "branches": """kind: branch
+title: several stiffnesses
+model: {type: chain, particles: 4, ends: periodic, gamma: 0, floor: -1, hertz: 100}
+orbit: {period: 1.5 pi, at_start: [2]}
+branch: {parameter: model.gamma, from: 0, to: 0.15}
+sweep: {parameter: model.hertz, from: 100, to: 1e5, points: 9, scale: log}
+""",
+    "logarithmic_branch": """kind: branch
+title: along the logarithm, without multipliers
+model: {type: chain, particles: 4, ends: periodic, gamma: 0.1, floor: -1}
+orbit: {period: 1.5 pi, at_start: [2]}
+branch: {parameter: model.hertz, from: 100, to: 1e5, scale: log, multipliers: false}
+""",
+    "unborn": """kind: branch
+title: none begins
+model: {type: chain, particles: 2, ends: periodic, gamma: 0, floor: null, cubic: 1}
+orbit: {period: 7, excited: [0]}
+branch: {parameter: model.gamma, from: 0, to: 0.1}
+""",
     "stateless": ring("no states", GAMMA.format("from: 0, to: 0.19, points: 3"), ", states: false"),
     "floors": """kind: orbits
 title: the floor of one particle
@@ -119,6 +145,11 @@ FIGURES = [
     ("plot_lyapunov.py", "many_exponents", []),
     ("plot_lyapunov.py", "many_exponents", ["--task", "1"]),
     ("plot_lyapunov.py", "resting", []),
+    ("plot_branch.py", "branch", []),
+    ("plot_branch.py", "branch", ["--y", "multiplier_max"]),
+    ("plot_branch.py", "branches", []),
+    ("plot_branch.py", "branches", ["--y", "amplitude", "--tasks", "0", "8"]),
+    ("plot_branch.py", "logarithmic_branch", ["--y", "period"]),
 ]
 
 # script, file, words of the message
@@ -135,6 +166,8 @@ REFUSALS = [
     ("plot_stability.py", "grid.h5", "no /orbits/stable in it (the study did not ask for orbit.stable)"),
     ("plot_stability.py", "stable.h5", "1 swept parameters (model.gamma), this figure needs 2"),
     ("plot_lyapunov.py", "family.h5", "not a result of kind trajectory"),
+    ("plot_branch.py", "family.h5", "not a result of kind branch"),
+    ("plot_branch.py", "unborn.h5", "no branch of it begins (failed_start)"),
 ]
 
 
@@ -237,7 +270,7 @@ def unwritable_output_is_one_line(scripts, folder):
 
 def help_names_the_datasets(scripts, folder, script):
     done = call(scripts, folder, script, "--help")
-    kind = "trajectory" if script == "plot_lyapunov.py" else "orbits"
+    kind = {"plot_lyapunov.py": "trajectory", "plot_branch.py": "branch"}.get(script, "orbits")
     assert (
         done.returncode == 0 and f"/{kind}/outcome" in done.stdout and "--output" in done.stdout
     ), done.stdout

@@ -35,6 +35,8 @@ static void mistyped_names_find_the_nearest_key(void **state) {
                                          {"sweeps", "sweep"},
                                          {"sweep.form", "sweep.from"},
                                          {"sweep.point", "sweep.points"},
+                                         {"branhc", "branch"},
+                                         {"branch.form", "branch.from"},
                                          {"orbit.special_point", "orbit.special_points"},
                                          {"model.zzz", ""},
                                          {"", ""},
@@ -76,7 +78,7 @@ static void assert_allowed(study_key key, const char *expected) {
 
 static void allowed_values_are_said_in_words(void **state) {
   (void)state;
-  assert_allowed(KEY_KIND, "one of orbits, trajectory");
+  assert_allowed(KEY_KIND, "one of orbits, trajectory, branch");
   assert_allowed(KEY_TITLE, "text");
   assert_allowed(KEY_MODEL_PARTICLES, "an integer from 1 to 1000000000");
   assert_allowed(KEY_MODEL_ENDS, "one of periodic, fixed, free");

@@ -7,6 +7,7 @@
 #include "../task/kind.h"
 #include "../task/machine.h"
 #include "command.h"
+#include "restart.h"
 
 static const char help[] =
     "usage: ricochet check STUDY.yaml [--set KEY=VALUE ...]\n"
@@ -37,9 +38,12 @@ static int check_study(const char *path, const char *const *sets, size_t set_cou
   size_t length;
   study *s = NULL;
   kind_plan plan;
+  bool complete = false;
   int code = study_read_file(path, &text, &length, why);
   if (!code)
-    code = study_parse(path, text, length, sets, set_count, &s, why);
+    code = restart_resolve(path, &text, &length, sets, set_count, &complete, why);
+  if (!code)
+    code = study_parse(path, text, length, sets, complete ? 0 : set_count, &s, why);
   if (!code)
     code = kind_of(s)->plan(s, &plan, why);
   if (!code)

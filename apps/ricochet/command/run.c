@@ -9,6 +9,7 @@
 #include "command.h"
 #include "compute.h"
 #include "output.h"
+#include "restart.h"
 
 static const char help[] =
     "usage: ricochet run STUDY.yaml [options]\n"
@@ -46,17 +47,25 @@ typedef struct run {
   uint64_t outcomes[64]; /* tasks by word of the outcome column */
 } run;
 
+static int read_study(const run_options *o, char **text, size_t *length, bool *complete, message *why) {
+  const int code = study_read_file(o->study_path, text, length, why);
+  return code ? code : restart_resolve(o->study_path, text, length, o->sets, o->set_count, complete, why);
+}
+
 /* Rank 0 reads the file, all ranks parse the same text. */
 static int load(run *r, message *why) {
   char *text = NULL;
   size_t length = 0;
-  int code = ranks_rank() == 0 ? study_read_file(r->options.study_path, &text, &length, why) : 0;
+  const run_options *o = &r->options;
+  bool complete = false;
+  int code = ranks_rank() == 0 ? read_study(o, &text, &length, &complete, why) : 0;
   code = ranks_agree(code, why);
+  ranks_share(&complete, sizeof complete);
   if (!code)
     code = ranks_share_text(&text, &length, why);
   if (!code)
-    code = ranks_agree(
-        study_parse(r->options.study_path, text, length, r->options.sets, r->options.set_count, &r->study, why), why);
+    code = ranks_agree(study_parse(o->study_path, text, length, o->sets, complete ? 0 : o->set_count, &r->study, why),
+                       why);
   free(text);
   if (code)
     return code;

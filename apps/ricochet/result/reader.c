@@ -253,16 +253,26 @@ bool reader_is_column(const reader_set *s, const char *axis) {
 
 /* --- values --- */
 
-int reader_rows(const place *at, const reader_set *s, hsize_t first, hsize_t count, unsigned char *values) {
+/* @param first, count  [rank] */
+static int read_part(const place *at, const reader_set *s, const hsize_t *first, const hsize_t *count,
+                     unsigned char *values) {
   int code = 0;
   hid_t in_file = H5I_INVALID_HID, in_memory = H5I_INVALID_HID;
   HDF5_TRY(at, in_file = H5Dget_space(s->id), "read %s", s->name);
-  HDF5_TRY(at, H5Sselect_hyperslab(in_file, H5S_SELECT_SET, &first, NULL, &count, NULL), "read %s", s->name);
-  HDF5_TRY(at, in_memory = H5Screate_simple(1, &count, NULL), "read %s", s->name);
+  HDF5_TRY(at, H5Sselect_hyperslab(in_file, H5S_SELECT_SET, first, NULL, count, NULL), "read %s", s->name);
+  HDF5_TRY(at, in_memory = H5Screate_simple(s->rank, count, NULL), "read %s", s->name);
   HDF5_TRY(at, H5Dread(s->id, s->memory, in_memory, in_file, H5P_DEFAULT, values), "read %s", s->name);
 out:
   code = hdf5_close(at, in_memory, code);
   return hdf5_close(at, in_file, code);
+}
+
+int reader_rows(const place *at, const reader_set *s, hsize_t first, hsize_t count, unsigned char *values) {
+  return read_part(at, s, &first, &count, values);
+}
+
+int reader_row(const place *at, const reader_set *s, hsize_t row, unsigned char *values) {
+  return read_part(at, s, (hsize_t[]){row, 0}, (hsize_t[]){1, s->shape[1]}, values);
 }
 
 static void show_number(const unsigned char *value, int digits, char *text, size_t size) {

@@ -63,6 +63,10 @@ void reader_row_axis(const reader_set *s, char *axis);
  *  @param values  [count][value_bytes] */
 int reader_rows(const place *at, const reader_set *s, hsize_t first, hsize_t count, unsigned char *values);
 
+/** Reads one row of a set with two axes.
+ *  @param values  [shape[1]][value_bytes] */
+int reader_row(const place *at, const reader_set *s, hsize_t row, unsigned char *values);
+
 /** Numbers that a value of the set consists of: real and imaginary part of a complex one, else 1. */
 int reader_parts(const reader_set *s);
 

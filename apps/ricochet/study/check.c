@@ -6,10 +6,6 @@
 #include "number.h"
 #include "parts.h"
 
-static bool is_kind(const study *s, const char *kind) {
-  return strcmp(s->values[KEY_KIND].text, kind) == 0;
-}
-
 /* A sweep over a key or an element of its list, NULL when there is none. */
 static const sweep_entry *any_sweep_over(const study *s, study_key key) {
   for (size_t i = 0; i < s->sweep_count; i++)
@@ -18,31 +14,39 @@ static const sweep_entry *any_sweep_over(const study *s, study_key key) {
   return NULL;
 }
 
-/* Node that gives a key or sweeps it, 0 when it has its default. */
-static int node_of_key(const study *s, study_key key) {
+int check_node_of_key(const study *s, study_key key) {
   const sweep_entry *e = any_sweep_over(s, key);
   return s->values[key].node ? s->values[key].node : e ? e->nodes[SWEEP_PARAMETER] : 0;
 }
 
-/* Node of a section, or of a sweep that stands for it; 0 when nothing of it is given. */
-static int node_of_section(const study *s, const document *d, const char *section) {
+int check_node_of_section(const study *s, const document *d, const char *section) {
   const size_t length = strlen(section);
   int node = document_find(d, DOCUMENT_ROOT, section);
   for (int key = 0; key < KEY_COUNT && !node; key++) {
     const char *path = schema_row((study_key)key)->path;
     if (strncmp(path, section, length) == 0 && path[length] == '.')
-      node = node_of_key(s, (study_key)key);
+      node = check_node_of_key(s, (study_key)key);
   }
   return node;
 }
 
 /* Whether the study has a periodic orbit to compute: its kind is `orbits`, or it starts on one. */
 static bool has_orbit(const study *s, const document *d) {
-  return is_kind(s, "orbits") || node_of_section(s, d, "orbit");
+  return study_is_kind(s, "orbits") || check_node_of_section(s, d, "orbit");
+}
+
+/* A branch whose period follows from its force needs none. */
+static bool needs_period(const study *s, const document *d) {
+  if (!study_is_kind(s, "branch"))
+    return has_orbit(s, d);
+  const bool forced = s->values[KEY_ORBIT_MOTION].text && strcmp(s->values[KEY_ORBIT_MOTION].text, "forced") == 0;
+  return !forced && s->values[KEY_ORBIT_FORCING_PERIODS].numbers[0] == -INFINITY;
 }
 
 static bool is_needed(const study *s, const document *d, const schema_entry *row) {
-  if (!row->required || (row == schema_row(KEY_ORBIT_PERIOD) && !has_orbit(s, d)))
+  if (study_restarts(s) && (row == schema_row(KEY_ORBIT_PERIOD) || row == schema_row(KEY_BRANCH_FROM)))
+    return false;
+  if (!row->required || (row == schema_row(KEY_ORBIT_PERIOD) && !needs_period(s, d)))
     return false;
   return row == schema_row(KEY_KIND) || schema_concerns(row, s->values[KEY_KIND].text);
 }
@@ -64,18 +68,20 @@ static int check_kind(const study *s, const document *d, message *why) {
   const char *kind = s->values[KEY_KIND].text;
   for (int key = 0; kind && key < KEY_COUNT; key++) {
     const schema_entry *row = schema_row((study_key)key);
-    const int node = node_of_key(s, (study_key)key);
-    if (node && !schema_concerns(row, kind))
-      return document_refuse(d, node, why, "%s is a key of kind: %s, and this is kind: %s", row->path, row->kinds,
-                             kind);
+    const int node = check_node_of_key(s, (study_key)key);
+    if (!node || schema_concerns(row, kind))
+      continue;
+    char kinds[64];
+    schema_kinds(row, kinds, sizeof kinds);
+    return document_refuse(d, node, why, "%s is a key of kind: %s, and this is kind: %s", row->path, kinds, kind);
   }
   return 0;
 }
 
 static int check_start(const study *s, const document *d, message *why) {
   const source file = {.name = s->name};
-  const int start = node_of_section(s, d, "start"), orbit = node_of_section(s, d, "orbit");
-  if (!is_kind(s, "trajectory") || !start != !orbit)
+  const int start = check_node_of_section(s, d, "start"), orbit = check_node_of_section(s, d, "orbit");
+  if (!study_is_kind(s, "trajectory") || !start != !orbit)
     return 0;
   if (!start)
     return source_refuse(&file, 0, why,
@@ -103,10 +109,13 @@ static int refuse_for_orbits(const study *s, const document *d, int node, study_
   char shown[32] = "null";
   if (value > -INFINITY)
     number_show(value, shown, sizeof shown);
+  if (study_is_kind(s, "branch"))
+    return document_refuse(d, node, why, "%s = %s, but orbit.motion: %s needs %s = %s", label, shown,
+                           s->values[KEY_ORBIT_MOTION].text, path, fallback);
   if (key == KEY_MODEL_RESTITUTION)
     return document_refuse(
         d, node, why, "%s = %s is not in this version: orbits of an undamped chain need restitution 1", label, shown);
-  if (is_kind(s, "orbits"))
+  if (study_is_kind(s, "orbits"))
     return document_refuse(d, node, why, "%s = %s, but kind: orbits needs %s = %s", label, shown, path, fallback);
   return document_refuse(d, node, why, "%s = %s, but a start on an orbit needs %s = %s", label, shown, path, fallback);
 }
@@ -133,22 +142,22 @@ static int check_default(const study *s, const document *d, study_key key, doubl
   return 0;
 }
 
+int check_key_default(const study *s, const document *d, study_key key, message *why) {
+  typed_value fallback;
+  if (!typed_default(schema_row(key), &fallback))
+    return refuse(why, EXIT_RUN, "%s: out of memory", s->name);
+  const double number = fallback.numbers[0];
+  typed_clear(&fallback);
+  return check_default(s, d, key, number, why);
+}
+
 /* Periodic orbits are those of the linear, conservative chain with rigid floors. */
 static int check_defaults(const study *s, const document *d, message *why) {
-  for (int key = 0; key < KEY_COUNT; key++) {
-    const schema_entry *row = schema_row((study_key)key);
-    typed_value fallback;
-    if (!row->orbits_default)
-      continue;
-    if (!typed_default(row, &fallback))
-      return refuse(why, EXIT_RUN, "%s: out of memory", s->name);
-    const double number = fallback.numbers[0];
-    typed_clear(&fallback);
-    const int code = check_default(s, d, (study_key)key, number, why);
-    if (code)
-      return code;
-  }
-  return 0;
+  int code = 0;
+  for (int key = 0; key < KEY_COUNT && !code; key++)
+    if (schema_row((study_key)key)->orbits_default)
+      code = check_key_default(s, d, (study_key)key, why);
+  return code;
 }
 
 /* One impact of the pattern: an element of orbit.at_start or orbit.at_half. */
@@ -179,6 +188,15 @@ static int refuse_particle(const study *s, const document *d, int node, const ch
                          s->values[KEY_MODEL_PARTICLES].numbers[0] - 1);
 }
 
+int check_particle(const study *s, const document *d, study_key key, size_t i, message *why) {
+  char label[64];
+  const double particle = s->values[key].numbers[i];
+  snprintf(label, sizeof label, "%s[%zu]", schema_row(key)->path, i);
+  if (particle < s->values[KEY_MODEL_PARTICLES].numbers[0])
+    return 0;
+  return refuse_particle(s, d, typed_item_node(d, &s->values[key], i), label, particle, why);
+}
+
 /* Checks the elements of one list that no sweep moves, and appends them to the impacts. */
 static int collect_impacts(const study *s, const document *d, study_key key, impact *impacts, size_t *count,
                            message *why) {
@@ -186,16 +204,15 @@ static int collect_impacts(const study *s, const document *d, study_key key, imp
   for (size_t i = 0; i < list->count; i++) {
     const int node = typed_item_node(d, list, i);
     const double particle = list->numbers[i];
-    char label[64];
-    snprintf(label, sizeof label, "%s[%zu]", schema_row(key)->path, i);
-    if (!(particle < s->values[KEY_MODEL_PARTICLES].numbers[0]))
-      return refuse_particle(s, d, node, label, particle, why);
+    const int code = check_particle(s, d, key, i, why);
+    if (code)
+      return code;
     if (sweep_over(s, key, (long)i))
       continue;
     if (!has_floor(s, (size_t)particle))
-      return document_refuse(d, node, why,
-                             "%s = %.0f has no floor to hit (model.floor is null there), expected a particle with one",
-                             label, particle);
+      return document_refuse(
+          d, node, why, "%s[%zu] = %.0f has no floor to hit (model.floor is null there), expected a particle with one",
+          schema_row(key)->path, i, particle);
     impacts[(*count)++] = (impact){particle, key, i};
   }
   return 0;
@@ -223,12 +240,16 @@ static int check_impacts(const study *s, const document *d, impact *impacts, mes
   return 0;
 }
 
+static bool names_particles(study_key key) {
+  return key == KEY_ORBIT_AT_START || key == KEY_ORBIT_AT_HALF || key == KEY_ORBIT_SEQUENCE || key == KEY_ORBIT_EXCITED;
+}
+
 /* Swept indices stay in the chain; where they meet another impact, or a particle without a floor, is an outcome of
  * that grid point. */
 static int check_swept_impacts(const study *s, const document *d, message *why) {
   for (size_t i = 0; i < s->sweep_count; i++) {
     const sweep_entry *e = &s->sweeps[i];
-    if (e->view.key != KEY_ORBIT_AT_START && e->view.key != KEY_ORBIT_AT_HALF)
+    if (!names_particles(e->view.key))
       continue;
     char label[128];
     snprintf(label, sizeof label, "swept %s", e->view.name);
@@ -241,13 +262,13 @@ static int check_swept_impacts(const study *s, const document *d, message *why) 
 
 static int check_pattern(const study *s, const document *d, message *why) {
   const size_t most = s->values[KEY_ORBIT_AT_START].count + s->values[KEY_ORBIT_AT_HALF].count;
-  if (most == 0) {
+  if (most == 0 && !study_is_kind(s, "branch")) {
     char place[640];
     study_place(s, KEY_ORBIT_AT_START, place, sizeof place);
     return refuse(why, EXIT_USAGE, "%s and orbit.at_half are both empty, expected at least one particle that hits",
                   place);
   }
-  impact *impacts = malloc(most * sizeof *impacts);
+  impact *impacts = malloc((most + 1) * sizeof *impacts);
   if (!impacts)
     return refuse(why, EXIT_RUN, "%s: out of memory", s->name);
   const int code = check_impacts(s, d, impacts, why);
@@ -267,6 +288,12 @@ static int check_special_points(const study *s, const document *d, message *why)
 
 /* What an orbit needs, of a study that has one. */
 static int check_orbit(const study *s, const document *d, message *why) {
+  if (study_restarts(s))
+    return branch_check_restart(s, d, why);
+  if (study_is_kind(s, "branch")) {
+    const int code = check_pattern(s, d, why);
+    return code ? code : branch_check(s, d, why);
+  }
   if (!has_orbit(s, d))
     return 0;
   int code = check_defaults(s, d, why);

@@ -41,11 +41,17 @@ static size_t path_distance(const char *path, const char *known) {
 typedef struct search {
   const char *path;
   const char *best;
-  size_t distance;
+  size_t distance; /* twice as many as letters */
 } search;
 
+static bool in_one_section(const char *a, const char *b) {
+  const size_t length = strcspn(a, ".");
+  return strcspn(b, ".") == length && strncmp(a, b, length) == 0;
+}
+
+/* Of names equally far, one in the same section is nearer. */
 static void consider(search *s, const char *known) {
-  const size_t distance = path_distance(s->path, known);
+  const size_t distance = 2 * path_distance(s->path, known) + !in_one_section(s->path, known);
   if (distance < s->distance) {
     s->best = known;
     s->distance = distance;
@@ -55,7 +61,7 @@ static void consider(search *s, const char *known) {
 /* Up to a third of the name may be wrong: beyond, a suggestion is a guess. */
 static search begin(const char *path) {
   const size_t third = strlen(last_name(path)) / 3;
-  return (search){.path = path, .best = "", .distance = 1 + (third > 1 ? third : 1)};
+  return (search){.path = path, .best = "", .distance = 2 * (1 + (third > 1 ? third : 1))};
 }
 
 static void finish(const search *s, char *near, size_t size) {
@@ -73,6 +79,8 @@ void schema_nearest(const char *path, char *near, size_t size) {
     consider(&s, "orbit");
     consider(&s, "start");
     consider(&s, "time");
+    consider(&s, "branch");
+    consider(&s, "restart");
     consider(&s, "sweep");
   }
   finish(&s, near, size);

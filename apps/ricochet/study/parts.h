@@ -22,6 +22,7 @@ struct study {
   typed_value values[KEY_COUNT];
   sweep_entry sweeps[STUDY_MAX_SWEEPS];
   size_t sweep_count;
+  study_parameter followed; /* by a branch; KEY_COUNT for other kinds */
   uint64_t tasks, digest;
 };
 
@@ -34,6 +35,26 @@ int sweep_read(study *s, const document *d, int node, message *why);
 const sweep_entry *sweep_over(const study *s, study_key key, long item);
 /** Node that says value `i` of a sweep. */
 int sweep_value_node(const document *d, const sweep_entry *e, size_t i);
+
+/** Whether the study is of a kind. */
+bool study_is_kind(const study *s, const char *kind);
+
+/** Finds what a branch is followed along, where the study is one and says so, and gives an omitted key its first value.
+ */
+int branch_read(study *s, const document *d, message *why);
+/** Checks the keys of a branch, and what they make of those of the orbit. */
+int branch_check(const study *s, const document *d, message *why);
+/** Checks the section `restart`, in place of these. */
+int branch_check_restart(const study *s, const document *d, message *why);
+
+/** Node that gives a key or sweeps it, 0 when it has its default. */
+int check_node_of_key(const study *s, study_key key);
+/** Node of a section, or of a sweep that stands for it; 0 when nothing of it is given. */
+int check_node_of_section(const study *s, const document *d, const char *section);
+/** Refuses a key, or a swept value of it, that does not have its default, for what needs it. */
+int check_key_default(const study *s, const document *d, study_key key, message *why);
+/** Refuses element `i` of a list that is no particle of the chain, as "orbit.at_start[2]". */
+int check_particle(const study *s, const document *d, study_key key, size_t i, message *why);
 
 /** Checks what concerns several keys at once: missing keys, lengths of lists, the pattern, swept values. */
 int study_check(const study *s, const document *d, message *why);

@@ -32,8 +32,11 @@ static void print_key(FILE *out, const schema_entry *row) {
   else
     fprintf(out, "no: %s", row->no_sweep);
   fprintf(out, " | %s", row->doc);
-  if (row->kinds)
-    fprintf(out, " For `kind: %s`.", row->kinds);
+  if (row->kinds) {
+    char kinds[64];
+    schema_kinds(row, kinds, sizeof kinds);
+    fprintf(out, " For `kind: %s`.", kinds);
+  }
   if (row->orbits_default)
     fprintf(out, " Orbits need the default.");
   fprintf(out, " |\n");
@@ -53,6 +56,12 @@ static void print_rules(FILE *out) {
       "- `null` in `model.floor` and `model.wall` means no obstacle: for all particles, or for one in a list.\n"
       "- A trajectory starts either at the state of the section `start` or on the orbit of the section `orbit`; orbits "
       "are\n  those of the linear chain without damping, and need the defaults of the keys that say so.\n"
+      "- A branch is a family of periodic motions of any model, followed along one number from a first guess: the "
+      "state "
+      "of the\n  section `start`, the particles of `orbit.excited`, the orbit of the linear chain whose impacts "
+      "`orbit.at_start` and\n  `orbit.at_half` name, or, for forced motions, rest; or from a point of an earlier "
+      "result, "
+      "which the section `restart`\n  names. Sweeps repeat it for other values of the other numbers.\n"
       "- Indices of particles and list elements count from 0.\n"
       "- Unknown keys, duplicate keys, anchors, aliases, tags, a second document, more than %d levels of nesting, and "
       "files\n  over %d MiB are refused.\n"

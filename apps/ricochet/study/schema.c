@@ -38,6 +38,14 @@ bool schema_is_among(const char *word, size_t length, const char *words) {
   return false;
 }
 
+void schema_kinds(const schema_entry *entry, char *text, size_t size) {
+  size_t used = 0;
+  *text = 0;
+  for (const char *kind = entry->kinds; *kind && used < size; kind += strcspn(kind, "|"), kind += *kind == '|')
+    used += (size_t)snprintf(text + used, size - used, "%s%.*s", kind == entry->kinds ? "" : " or ",
+                             (int)strcspn(kind, "|"), kind);
+}
+
 bool schema_concerns(const schema_entry *entry, const char *kind) {
   return !entry->kinds || schema_is_among(kind, strlen(kind), entry->kinds);
 }

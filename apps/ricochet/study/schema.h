@@ -33,6 +33,12 @@ typedef enum study_key {
   KEY_ORBIT_PERIOD,
   KEY_ORBIT_AT_START,
   KEY_ORBIT_AT_HALF,
+  KEY_ORBIT_MOTION,
+  KEY_ORBIT_ENERGY,
+  KEY_ORBIT_FORCING_PERIODS,
+  KEY_ORBIT_SEQUENCE,
+  KEY_ORBIT_TIMES,
+  KEY_ORBIT_EXCITED,
   KEY_ORBIT_METHOD,
   KEY_ORBIT_STATES,
   KEY_ORBIT_SPECIAL_POINTS,
@@ -48,6 +54,27 @@ typedef enum study_key {
   KEY_TIME_EVENTS_PER_TIME,
   KEY_TIME_LYAPUNOV,
   KEY_TIME_LYAPUNOV_INTERVAL,
+  KEY_BRANCH_PARAMETER,
+  KEY_BRANCH_FROM,
+  KEY_BRANCH_TO,
+  KEY_BRANCH_LOW,
+  KEY_BRANCH_HIGH,
+  KEY_BRANCH_SCALE,
+  KEY_BRANCH_STEP,
+  KEY_BRANCH_STEP_LEAST,
+  KEY_BRANCH_STEP_MOST,
+  KEY_BRANCH_NATURAL,
+  KEY_BRANCH_POINTS,
+  KEY_BRANCH_TOLERANCE,
+  KEY_BRANCH_MULTIPLIERS,
+  KEY_BRANCH_STATES,
+  KEY_BRANCH_CROSS,
+  KEY_BRANCH_SWITCH,
+  KEY_BRANCH_SEGMENTS,
+  KEY_RESTART_FILE,
+  KEY_RESTART_TASK,
+  KEY_RESTART_SPECIAL,
+  KEY_RESTART_POINT,
   KEY_COUNT
 } study_key;
 
@@ -94,7 +121,8 @@ typedef enum sweep_key {
 /** How a number meets the row of its key. */
 typedef enum schema_fit { FIT_OK, FIT_NOT_INTEGER, FIT_OUT_OF_RANGE } schema_fit;
 
-/** The row of a key; the table has KEY_COUNT rows. */
+/** The row of a key; the table has KEY_COUNT rows. Those of the sections `branch` and `restart` stand in a
+ *  file of their own. */
 const schema_entry *schema_row(study_key key);
 /** The row of a key of a sweep entry, its path "sweep.from". */
 const schema_entry *schema_sweep_row(sweep_key key);
@@ -102,7 +130,8 @@ const schema_entry *schema_sweep_row(sweep_key key);
 /** Key of a path, KEY_COUNT when there is none. */
 study_key schema_find(const char *path);
 
-/** Whether keys of the table stand under this top-level name: `model`, `orbit`, `start`, `time`. */
+/** Whether keys of the table stand under this top-level name: `model`, `orbit`, `start`, `time`, `branch`,
+ *  `restart`. */
 bool schema_is_section(const char *name);
 /** Whether a top-level name belongs to a later version: `iterate`. */
 bool schema_is_later_section(const char *name);
@@ -115,6 +144,8 @@ void schema_nearest(const char *path, char *near, size_t size);
 /** The same among the keys that can be swept. */
 void schema_nearest_parameter(const char *path, char *near, size_t size);
 
+/** The kinds that a key is for, in words: "trajectory or branch"; of a key with `kinds`. */
+void schema_kinds(const schema_entry *entry, char *text, size_t size);
 /** Whether a key is for studies of this kind. */
 bool schema_concerns(const schema_entry *entry, const char *kind);
 /** Whether a word is one of "a|b|c"; NULL holds none. @param length  of the word */

@@ -1,22 +1,17 @@
-/* The schema table: every key of a study. */
-#include "schema.h"
-
-#include <math.h>
+/* The schema table: every key of a study but those of the sections `branch` and `restart`. */
+#include "schema_rows.h"
 
 #include "study.h"
 
-#define ANY  .low = -INFINITY, .high = INFINITY
-#define FLAG .type = VALUE_FLAG, .scalar = true, .no_sweep = "it is a flag, not a number"
-#define WORD .type = VALUE_WORD, .scalar = true, .no_sweep = "it is a word, not a number"
-
-static const schema_entry rows[KEY_COUNT] = {
+static const schema_entry rows[KEY_BRANCH_PARAMETER] = {
     [KEY_KIND] = {.path = "kind",
                   WORD,
                   .required = true,
-                  .words = "orbits|trajectory",
-                  .later_words = "branch|grazing|diagram|atlas|basin",
+                  .words = "orbits|trajectory|branch",
+                  .later_words = "grazing|diagram|atlas|basin",
                   .doc = "What to compute. `orbits`: the periodic orbit of one impact pattern at every grid point; "
-                         "`trajectory`: the motion from a state, or from such an orbit, at every grid point."},
+                         "`trajectory`: the motion from a state, or from such an orbit, at every grid point; `branch`: "
+                         "a family of periodic motions along a parameter, at every grid point of the others."},
     [KEY_TITLE] = {.path = "title",
                    .type = VALUE_TEXT,
                    .scalar = true,
@@ -208,7 +203,8 @@ static const schema_entry rows[KEY_COUNT] = {
                           .high = INFINITY,
                           .sweep = true,
                           .doc = "Period T of the orbit; a particle alone has the period 2 pi. In a trajectory, the "
-                                 "section orbit gives the start: the orbit's state just after t = 0."},
+                                 "section orbit gives the start: the orbit's state just after t = 0. In a branch, a "
+                                 "first guess where the motion or its energy decides about the period."},
     [KEY_ORBIT_AT_START] = {.path = "orbit.at_start",
                             .type = VALUE_INTEGER,
                             .list = true,
@@ -216,7 +212,8 @@ static const schema_entry rows[KEY_COUNT] = {
                             .low = 0,
                             .high = INFINITY,
                             .sweep = true,
-                            .doc = "Particles that hit at t = 0 modulo T."},
+                            .doc = "Particles that hit at t = 0 modulo T; with Hertz contacts, in a branch, that press "
+                                   "their floor then."},
     [KEY_ORBIT_AT_HALF] = {.path = "orbit.at_half",
                            .type = VALUE_INTEGER,
                            .list = true,
@@ -224,9 +221,68 @@ static const schema_entry rows[KEY_COUNT] = {
                            .low = 0,
                            .high = INFINITY,
                            .sweep = true,
-                           .doc =
-                               "Particles that hit at t = T/2 modulo T. The two lists name at least one particle, and "
-                               "each at most once."},
+                           .doc = "Particles that hit at t = T/2 modulo T. The two lists name at least one particle "
+                                  "(in a branch also none), and each at most once."},
+    [KEY_ORBIT_MOTION] =
+        {.path = "orbit.motion",
+         WORD,
+         .kinds = "branch",
+         .fallback = "even",
+         .words = "even|forced|conservative|autonomous",
+         .doc = "`even`: about t = 0 and T/2, of models without damping; `forced`: with the period of the force or a "
+                "multiple of it; `conservative`: without force or losses; `autonomous`: without force, the period is "
+                "found."},
+    [KEY_ORBIT_ENERGY] = {.path = "orbit.energy",
+                          .type = VALUE_NUMBER,
+                          .scalar = true,
+                          .null = true,
+                          .fallback = "null",
+                          ANY,
+                          .kinds = "branch",
+                          .sweep = true,
+                          .doc = "Energy of an even or conservative motion, instead of its period; null: the period is "
+                                 "given."},
+    [KEY_ORBIT_FORCING_PERIODS] = {.path = "orbit.forcing_periods",
+                                   .type = VALUE_INTEGER,
+                                   .scalar = true,
+                                   .null = true,
+                                   .fallback = "null",
+                                   .low = 1,
+                                   .high = 1e6,
+                                   .kinds = "branch",
+                                   .sweep = true,
+                                   .doc = "The period is this many of the model's force, instead of `orbit.period`; "
+                                          "null: 1 for forced motions without `orbit.period`."},
+    [KEY_ORBIT_SEQUENCE] = {.path = "orbit.sequence",
+                            .type = VALUE_INTEGER,
+                            .list = true,
+                            .fallback = "[]",
+                            .low = 0,
+                            .high = INFINITY,
+                            .kinds = "branch",
+                            .sweep = true,
+                            .doc =
+                                "Particles in the order in which they hit their floor, or their wall where they have "
+                                "no floor, in one period; of even motions between 0 and T/2."},
+    [KEY_ORBIT_TIMES] = {.path = "orbit.times",
+                         .type = VALUE_NUMBER,
+                         .list = true,
+                         .fallback = "[]",
+                         ANY,
+                         .kinds = "branch",
+                         .sweep = true,
+                         .doc = "First guess of the times of these impacts, rising."},
+    [KEY_ORBIT_EXCITED] = {.path = "orbit.excited",
+                           .type = VALUE_INTEGER,
+                           .list = true,
+                           .fallback = "[]",
+                           .low = 0,
+                           .high = INFINITY,
+                           .kinds = "branch",
+                           .sweep = true,
+                           .doc = "Particles that swing in the first guess of a motion without impacts: at t = 0 at "
+                                  "the amplitude at which one alone, with its cubic spring, has the period T; the "
+                                  "others are at rest."},
     [KEY_ORBIT_METHOD] = {.path = "orbit.method",
                           WORD,
                           .kinds = "orbits",
@@ -273,9 +329,10 @@ static const schema_entry rows[KEY_COUNT] = {
                      .per_particle = true,
                      .fallback = "0",
                      ANY,
-                     .kinds = "trajectory",
+                     .kinds = "trajectory|branch",
                      .sweep = true,
-                     .doc = "Displacements at t = 0: one number for all, or one per particle."},
+                     .doc = "Displacements at t = 0, in a branch of the first guess, after the first impact of "
+                            "`orbit.sequence`: one number for all, or one per particle."},
     [KEY_START_V] = {.path = "start.v",
                      .type = VALUE_NUMBER,
                      .scalar = true,
@@ -283,9 +340,10 @@ static const schema_entry rows[KEY_COUNT] = {
                      .per_particle = true,
                      .fallback = "0",
                      ANY,
-                     .kinds = "trajectory",
+                     .kinds = "trajectory|branch",
                      .sweep = true,
-                     .doc = "Velocities at t = 0: one number for all, or one per particle."},
+                     .doc = "Velocities at t = 0, in a branch of the first guess, after the first impact of "
+                            "`orbit.sequence`: one number for all, or one per particle."},
     [KEY_TIME_DURATION] = {.path = "time.duration",
                            .type = VALUE_NUMBER,
                            .scalar = true,
@@ -390,7 +448,7 @@ static const schema_entry sweep_rows[SWEEP_KEY_COUNT] = {
 };
 
 const schema_entry *schema_row(study_key key) {
-  return &rows[key];
+  return key < KEY_BRANCH_PARAMETER ? &rows[key] : schema_branch_row(key);
 }
 const schema_entry *schema_sweep_row(sweep_key key) {
   return &sweep_rows[key];

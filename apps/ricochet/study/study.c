@@ -50,7 +50,8 @@ static int read_top(study *s, const document *d, const yaml_node_pair_t *pair, m
     return read_section(s, d, name, pair->value, why);
   if (schema_is_later_section(name))
     return document_refuse(d, pair->key, why,
-                           "the section '%s' is not in this version, expected model, orbit, start, time and sweep",
+                           "the section '%s' is not in this version, expected model, orbit, start, time, branch, "
+                           "restart and sweep",
                            name);
   const study_key key = schema_find(name);
   if (key != KEY_COUNT && !strchr(name, '.'))
@@ -98,6 +99,8 @@ static int read_tree(study *s, const document *d, message *why) {
   int code = read_keys(s, d, why);
   if (!code)
     code = sweep_read(s, d, document_find(d, DOCUMENT_ROOT, "sweep"), why);
+  if (!code)
+    code = branch_read(s, d, why);
   return code ? code : study_check(s, d, why);
 }
 
@@ -138,6 +141,7 @@ int study_parse(const char *name, const char *text, size_t length, const char *c
     free(s);
     return refuse(why, EXIT_RUN, "%s: out of memory", name);
   }
+  s->followed.key = KEY_COUNT;
   document *d = NULL;
   int code = document_read((source){.name = s->name, .lines = true}, text, length, &d, why);
   if (!code)
@@ -168,6 +172,10 @@ const char *study_kind(const study *s) {
   return s->values[KEY_KIND].text;
 }
 
+bool study_is_kind(const study *s, const char *kind) {
+  return s->values[KEY_KIND].text && strcmp(s->values[KEY_KIND].text, kind) == 0;
+}
+
 const char *study_name(const study *s) {
   return s->name;
 }
@@ -177,6 +185,13 @@ const char *study_text(const study *s) {
 }
 uint64_t study_digest(const study *s) {
   return s->digest;
+}
+bool study_restarts(const study *s) {
+  return study_is_kind(s, "branch") && s->values[KEY_RESTART_FILE].node != 0;
+}
+
+const study_parameter *study_followed(const study *s) {
+  return &s->followed;
 }
 uint64_t study_tasks(const study *s) {
   return s->tasks;
@@ -189,6 +204,10 @@ const study_sweep *study_sweep_at(const study *s, size_t index) {
 }
 size_t study_line(const study *s, study_key key) {
   return s->values[key].line;
+}
+
+bool study_gives(const study *s, study_key key) {
+  return s->values[key].line > 0 || s->values[key].assigned;
 }
 
 void study_place(const study *s, study_key key, char *text, size_t size) {

@@ -22,6 +22,13 @@ enum {
 
 typedef struct study study;
 
+/** A number of the study by its name. */
+typedef struct study_parameter {
+  char name[96]; /* "model.gamma", "model.floor[3]" */
+  study_key key;
+  long item; /* index of a list element, -1 for a scalar */
+} study_parameter;
+
 /** One entry of `sweep`: a parameter and its values. */
 typedef struct study_sweep {
   char name[96]; /* "model.gamma", "model.floor[3]" */
@@ -56,6 +63,9 @@ const char *study_name(const study *s);
  *  `--set`). */
 size_t study_line(const study *s, study_key key);
 
+/** Whether a key is given, in the file, by `--set` or by a sweep, and has not its default. */
+bool study_gives(const study *s, study_key key);
+
 /** "FILE:LINE: model.gamma" of a key, or "--set model.gamma=3: model.gamma", or "FILE: model.gamma" for a default. */
 void study_place(const study *s, study_key key, char *text, size_t size);
 
@@ -71,6 +81,13 @@ const study_sweep *study_sweep_at(const study *s, size_t index);
 /** Number of grid points, the product over the sweeps; 1 without a sweep. Less than 2^40. */
 uint64_t study_tasks(const study *s);
 
+/** What a branch is followed along; of studies of kind `branch`. */
+const study_parameter *study_followed(const study *s);
+
+/** Whether a study of kind `branch` says that it starts from a result. What it takes from there is not known yet, and
+ *  how its keys fit together not checked. */
+bool study_restarts(const study *s);
+
 /** Value of sweep `index` at a task below study_tasks; the last sweep varies fastest. */
 double study_sweep_value(const study *s, size_t index, uint64_t task);
 
@@ -83,6 +100,9 @@ study_values *study_values_create(const study *s);
 void study_values_destroy(study_values **v);
 /** Moves to a task, below study_tasks. Only swept values are rewritten, nothing is allocated. */
 void study_values_at(study_values *v, uint64_t task);
+
+/** Moves the parameter that a branch is followed along, which starts at `branch.from`. */
+void study_values_follow(study_values *v, double value);
 
 /** Whether the key was given (in the file or by --set) or has a default. */
 bool value_present(const study_values *v, study_key key);

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "number.h"
-#include "parts.h"
+#include "parameter.h"
 
 static const uint64_t too_many_tasks = (uint64_t)1 << 40;
 
@@ -65,83 +65,29 @@ static int read_number(const reading *r, sweep_key key, double *number) {
   return code;
 }
 
-/* Splits "model.floor[3]" into key path and item; item -1 without an index, -2 for a malformed or huge one. */
-static long split_parameter(const char *text, char *path, size_t size) {
-  const size_t length = strcspn(text, "[");
-  snprintf(path, size, "%.*s", (int)(length < size ? length : size - 1), text);
-  if (!text[length])
-    return -1;
-  const char *digits = text + length + 1;
-  const size_t count = strspn(digits, "0123456789");
-  if (count == 0 || count > 9 || strcmp(digits + count, "]") != 0)
-    return -2;
-  return strtol(digits, NULL, 10);
-}
-
-static int refuse_parameter(const reading *r, const char *name, const char *path) {
-  const int node = r->e->nodes[SWEEP_PARAMETER];
-  char near[64], shown[80], section[16];
-  source_quote(name, strlen(name), shown, sizeof shown);
-  snprintf(section, sizeof section, "%.*s", (int)strcspn(path, "."), path);
-  if (schema_is_later_section(section))
-    return document_refuse(r->d, node, r->why, "%s.parameter = %s is not in this version: the section '%s' is not",
-                           r->label, shown, section);
-  schema_nearest_parameter(path, near, sizeof near);
-  if (*near)
-    return document_refuse(r->d, node, r->why, "unknown sweep parameter '%s'; did you mean '%s'?", shown, near);
-  return document_refuse(
-      r->d, node, r->why,
-      "unknown sweep parameter '%s', expected a number of model, orbit, start or time such as model.gamma", shown);
-}
-
-/* A parameter must name one number: a scalar by its key, an element of a list by its index. */
-static int check_item(const reading *r, const schema_entry *row, long item) {
-  const typed_value *value = &r->s->values[r->e->view.key];
-  const int node = r->e->nodes[SWEEP_PARAMETER];
-  const char *path = row->path;
-  if (!value->list)
-    return item == -1 ? 0
-                      : document_refuse(r->d, node, r->why,
-                                        "%s.parameter = %s, but %s is a single number here: sweep %s without an index, "
-                                        "or give a list",
-                                        r->label, r->e->view.name, path, path);
-  if (value->count == 0)
-    return document_refuse(r->d, node, r->why, "%s.parameter = %s, but %s is an empty list: give the elements to sweep",
-                           r->label, r->e->view.name, path);
-  if (item == -1)
-    return document_refuse(r->d, node, r->why,
-                           "%s.parameter = %s, but %s is a list: sweep one element by its index, such as %s[0]",
-                           r->label, path, path, path);
-  if (!(item >= 0 && (size_t)item < value->count))
-    return document_refuse(r->d, node, r->why,
-                           "%s.parameter = %s, but %s has %zu elements: expected an index from 0 to %zu", r->label,
-                           r->e->view.name, path, value->count, value->count - 1);
-  return 0;
+static parameter_use use_of(const reading *r, char *label, size_t size) {
+  snprintf(label, size, "%s.parameter", r->label);
+  return (parameter_use){.label = label,
+                         .noun = "sweep",
+                         .verb = "sweep",
+                         .done = "cannot be swept",
+                         .example = "a number of model, orbit, start or time such as model.gamma",
+                         .node = r->e->nodes[SWEEP_PARAMETER]};
 }
 
 static int find_parameter(const reading *r, const char *name) {
-  char path[64];
-  const long item = split_parameter(name, path, sizeof path);
-  const study_key key = schema_find(path);
-  const int node = r->e->nodes[SWEEP_PARAMETER];
-  if (key == KEY_COUNT)
-    return refuse_parameter(r, name, path);
-  const schema_entry *row = schema_row(key);
-  if (!row->sweep)
-    return document_refuse(r->d, node, r->why, "%s.parameter = %s cannot be swept: %s", r->label, path, row->no_sweep);
-  if (item >= 0)
-    snprintf(r->e->view.name, sizeof r->e->view.name, "%s[%ld]", path, item);
-  else
-    snprintf(r->e->view.name, sizeof r->e->view.name, "%s", name);
-  r->e->view.key = key;
-  r->e->view.item = item;
-  const int code = check_item(r, row, item);
+  char label[64];
+  study_parameter found;
+  const parameter_use use = use_of(r, label, sizeof label);
+  const int code = parameter_find(r->s, r->d, &use, name, &found, r->why);
   if (code)
     return code;
-  const sweep_entry *other = sweep_over(r->s, key, item);
-  return !other
-             ? 0
-             : document_refuse(r->d, node, r->why, "%s.parameter = %s is swept twice, expected once", r->label, name);
+  snprintf(r->e->view.name, sizeof r->e->view.name, "%s", found.name);
+  r->e->view.key = found.key;
+  r->e->view.item = found.item;
+  if (sweep_over(r->s, found.key, found.item))
+    return document_refuse(r->d, use.node, r->why, "%s = %s is swept twice, expected once", label, name);
+  return 0;
 }
 
 static int read_parameter(const reading *r) {
@@ -256,22 +202,6 @@ static int read_range(const reading *r) {
   return 0;
 }
 
-/* Gives an omitted key what its sweep says first, as if it stood in the study. */
-static int supply_value(const reading *r) {
-  typed_value *value = &r->s->values[r->e->view.key];
-  if (value->node)
-    return 0;
-  const char *assigned = document_assigned_by(r->d, r->e->nodes[SWEEP_PARAMETER]);
-  typed_clear(value);
-  *value = (typed_value){.present = true, .count = 1, .line = document_line(r->d, r->keys[SWEEP_PARAMETER])};
-  value->numbers = calloc(1, sizeof *value->numbers);
-  value->assigned = assigned ? strdup(assigned) : NULL;
-  if (!value->numbers || (assigned && !value->assigned))
-    return no_memory(r);
-  value->numbers[0] = r->e->values[0];
-  return 0;
-}
-
 static int read_entry(reading *r) {
   int code = find_keys(r);
   if (!code)
@@ -286,7 +216,10 @@ static int read_entry(reading *r) {
   for (size_t i = 0; i < r->e->view.points && !code; i++)
     code =
         typed_check(r->d, sweep_value_node(r->d, r->e, i), schema_row(r->e->view.key), label, r->e->values[i], r->why);
-  return code ? code : supply_value(r);
+  char used[64];
+  const parameter_use use = use_of(r, used, sizeof used);
+  return code ? code
+              : parameter_supply(r->s, r->d, &use, r->keys[SWEEP_PARAMETER], r->e->view.key, r->e->values[0], r->why);
 }
 
 static int count_tasks(study *s, const document *d, int node, message *why) {

@@ -3,18 +3,19 @@
 
 #include "parts.h"
 
-/* Numbers point into the study, but for keys with a swept value: those have a copy here, which each task rewrites. */
+/* Numbers point into the study, but for keys with a value that varies: those have a copy here, which each task
+ * rewrites. */
 struct study_values {
   const study *s;
   const double *numbers[KEY_COUNT];
   double *copies[KEY_COUNT];
 };
 
-static size_t swept_item(const study_sweep *sweep) {
-  return sweep->item < 0 ? 0 : (size_t)sweep->item;
+static size_t place_of(long item) {
+  return item < 0 ? 0 : (size_t)item;
 }
 
-static bool copy_swept(study_values *v, study_key key) {
+static bool copy_varied(study_values *v, study_key key) {
   if (v->copies[key])
     return true;
   const typed_value *value = &v->s->values[key];
@@ -26,6 +27,11 @@ static bool copy_swept(study_values *v, study_key key) {
   return true;
 }
 
+/* A branch that restarts may not say yet where it begins. */
+static bool follows(const study *s) {
+  return s->followed.key != KEY_COUNT && s->values[KEY_BRANCH_FROM].present;
+}
+
 study_values *study_values_create(const study *s) {
   study_values *v = calloc(1, sizeof *v);
   if (!v)
@@ -34,11 +40,14 @@ study_values *study_values_create(const study *s) {
   for (int key = 0; key < KEY_COUNT; key++)
     v->numbers[key] = s->values[key].numbers;
   for (size_t i = 0; i < s->sweep_count; i++)
-    if (!copy_swept(v, s->sweeps[i].view.key)) {
+    if (!copy_varied(v, s->sweeps[i].view.key)) {
       study_values_destroy(&v);
       return NULL;
     }
-  study_values_at(v, 0);
+  if (follows(s) && !copy_varied(v, s->followed.key))
+    study_values_destroy(&v);
+  if (v)
+    study_values_at(v, 0);
   return v;
 }
 
@@ -54,8 +63,14 @@ void study_values_destroy(study_values **v) {
 void study_values_at(study_values *v, uint64_t task) {
   for (size_t i = 0; i < v->s->sweep_count; i++) {
     const study_sweep *sweep = &v->s->sweeps[i].view;
-    v->copies[sweep->key][swept_item(sweep)] = study_sweep_value(v->s, i, task);
+    v->copies[sweep->key][place_of(sweep->item)] = study_sweep_value(v->s, i, task);
   }
+  if (follows(v->s))
+    study_values_follow(v, v->s->values[KEY_BRANCH_FROM].numbers[0]);
+}
+
+void study_values_follow(study_values *v, double value) {
+  v->copies[v->s->followed.key][place_of(v->s->followed.item)] = value;
 }
 
 bool value_present(const study_values *v, study_key key) {

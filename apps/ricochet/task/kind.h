@@ -12,7 +12,7 @@
 #include "records.h"
 #include "table.h"
 
-enum { KIND_MOST_TAILS = 3 };
+enum { KIND_MOST_TAILS = 4 };
 
 /** A table of records, of which each task has as many as it has: task i owns the records offset[i] to offset[i + 1]. */
 typedef struct tail {
@@ -60,5 +60,6 @@ const kind *kind_of(const study *s);
 
 extern const kind kind_orbits;
 extern const kind kind_trajectory;
+extern const kind kind_branch;
 
 #endif

@@ -1,6 +1,7 @@
 #include "lattice_model.h"
 
 #include <math.h>
+#include <stdint.h>
 #include <stdlib.h>
 
 #include "chain_model.h"
@@ -84,4 +85,11 @@ void lattice_model_read(lattice_model *m, const study_values *v) {
   m->obstacle_count = 0;
   add_obstacles(m, v, KEY_MODEL_FLOOR, +1);
   add_obstacles(m, v, KEY_MODEL_WALL, -1);
+}
+
+size_t lattice_model_obstacle(const lattice_model *m, size_t particle, int side) {
+  for (size_t j = 0; j < m->obstacle_count; j++)
+    if (m->obstacles[j].coordinate == particle && m->obstacles[j].side == side)
+      return j;
+  return SIZE_MAX;
 }

@@ -25,6 +25,9 @@ void lattice_model_clear(lattice_model *m);
 /** Reads the lattice of the present task. */
 void lattice_model_read(lattice_model *m, const study_values *v);
 
+/** Index of the obstacle of a particle, side +1 floor, -1 wall; SIZE_MAX when it has none. */
+size_t lattice_model_obstacle(const lattice_model *m, size_t particle, int side);
+
 /** Element of a particle: that of the list, or the one value for all. */
 double lattice_model_value(const study_values *v, study_key key, size_t particle);
 

@@ -1,0 +1,284 @@
+#include "restart.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "../result/motion.h"
+#include "../study/study.h"
+
+/* Impacts closer than this part of the period to t = 0 or T/2 are there. */
+static const double at_once = 1e-9;
+
+enum { MOST_ADDED = 16 };
+
+/* The assignments of a study, those of the command line first. */
+typedef struct assignments {
+  const char **all; /* [count] */
+  size_t given, count;
+  int failed; /* no memory */
+} assignments;
+
+/* A text that grows. */
+typedef struct line {
+  char *text;
+  size_t length, room;
+  int failed;
+} line;
+
+static void append(line *l, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+static void append(line *l, const char *format, ...) {
+  enum { LONGEST = 160 };
+  if (l->room - l->length < LONGEST) {
+    char *more = realloc(l->text, 2 * l->room + LONGEST);
+    l->failed = l->failed || !more;
+    if (l->failed)
+      return;
+    l->text = more;
+    l->room = 2 * l->room + LONGEST;
+  }
+  va_list arguments;
+  va_start(arguments, format);
+  l->length += (size_t)vsnprintf(l->text + l->length, LONGEST, format, arguments);
+  va_end(arguments);
+}
+
+static void add(assignments *a, line *l) {
+  a->failed = a->failed || l->failed || !l->text;
+  a->all[a->count++] = l->text ? l->text : strdup("");
+}
+
+static void append_list(line *l, const double *numbers, size_t count) {
+  append(l, "[");
+  for (size_t i = 0; i < count; i++)
+    append(l, "%s%.17g", i ? ", " : "", numbers[i]);
+  append(l, "]");
+}
+
+static void assign_number(assignments *a, const char *name, double value) {
+  line l = {0};
+  append(&l, "%s=%.17g", name, value);
+  add(a, &l);
+}
+
+static void assign_list(assignments *a, const char *name, const double *numbers, size_t count) {
+  line l = {0};
+  append(&l, "%s=", name);
+  append_list(&l, numbers, count);
+  add(a, &l);
+}
+
+/* --- what a study takes --- */
+
+static bool is_swept(const study *s, const char *name) {
+  for (size_t i = 0; i < study_sweeps(s); i++)
+    if (strcmp(study_sweep_at(s, i)->name, name) == 0)
+      return true;
+  return false;
+}
+
+/* Where the branch starts, of a parameter that did not vary in the result: at the motion's own period or energy, at
+ * what the study says, or else at the number of its model. */
+static void assign_from(assignments *a, const study *s, const study_values *v, const result_motion *m) {
+  const study_parameter *followed = study_followed(s);
+  if (followed->key == KEY_ORBIT_PERIOD)
+    assign_number(a, "branch.from", m->period);
+  else if (followed->key == KEY_ORBIT_ENERGY)
+    assign_number(a, "branch.from", m->energy);
+  else if (followed->key != KEY_COUNT && !study_gives(s, KEY_BRANCH_FROM) && value_present(v, followed->key))
+    assign_number(a, "branch.from", value_number(v, followed->key, followed->item < 0 ? 0 : (size_t)followed->item));
+}
+
+/* The numbers that vary in the result, but those that vary in the study. */
+static void assign_numbers(assignments *a, const study *s, const study_values *v, const result_motion *m) {
+  const char *followed = study_followed(s)->key == KEY_COUNT ? "" : study_followed(s)->name;
+  bool known = false;
+  for (size_t i = 0; i < m->number_count; i++) {
+    const result_number *n = &m->numbers[i];
+    if (strcmp(n->name, followed) == 0) {
+      assign_number(a, "branch.from", n->value);
+      known = true;
+    } else if (!is_swept(s, n->name))
+      assign_number(a, n->name, n->value);
+  }
+  if (!known)
+    assign_from(a, s, v, m);
+}
+
+/* Whether a key of the motion is neither followed nor swept, here or in the result. */
+static bool is_fixed(const study *s, study_key key, const char *name, const result_motion *m) {
+  for (size_t i = 0; i < m->number_count; i++)
+    if (strcmp(m->numbers[i].name, name) == 0)
+      return false;
+  return study_followed(s)->key != key && !is_swept(s, name);
+}
+
+/* The numbers of the motion that the model does not give: its period, and its energy where the study has one. */
+static void assign_period(assignments *a, const study *s, const study_values *v, const result_motion *m) {
+  const bool forced = strcmp(value_word(v, KEY_ORBIT_MOTION), "forced") == 0;
+  const bool multiple = value_number(v, KEY_ORBIT_FORCING_PERIODS, 0) > 0;
+  if (!forced && !multiple && is_fixed(s, KEY_ORBIT_PERIOD, "orbit.period", m))
+    assign_number(a, "orbit.period", m->period);
+  if (value_number(v, KEY_ORBIT_ENERGY, 0) > -INFINITY && is_fixed(s, KEY_ORBIT_ENERGY, "orbit.energy", m))
+    assign_number(a, "orbit.energy", m->energy);
+}
+
+/* Particles that hit, and when, in the order of a list of the study. */
+typedef struct hits {
+  double *particles, *times; /* [count] */
+  size_t count;
+} hits;
+
+static void add_hit(hits *h, const result_impact *impact) {
+  h->particles[h->count] = (double)impact->particle;
+  h->times[h->count++] = impact->time;
+}
+
+/* Of even motions: those at t = 0, at T/2 and between; the second half mirrors the first. */
+static void sort_even(const result_motion *m, hits *start, hits *half, hits *between) {
+  const double T = m->period;
+  for (size_t k = 0; k < m->impact_count; k++) {
+    const double t = m->impacts[k].time;
+    if (fmin(t, T - t) <= at_once * T)
+      add_hit(start, &m->impacts[k]);
+    else if (fabs(t - T / 2) <= at_once * T)
+      add_hit(half, &m->impacts[k]);
+    else if (t < T / 2)
+      add_hit(between, &m->impacts[k]);
+  }
+}
+
+/* Of others the last one listed comes first; times go on rising beyond the period. */
+static void sort_sequence(const result_motion *m, hits *sequence) {
+  for (size_t k = 0; k < m->impact_count; k++) {
+    result_impact impact = m->impacts[(k + m->impact_count - 1) % m->impact_count];
+    while (k > 0 && impact.time < sequence->times[k - 1])
+      impact.time += m->period;
+    add_hit(sequence, &impact);
+  }
+}
+
+static void assign_impacts(assignments *a, const study_values *v, const result_motion *m, double *store) {
+  const size_t n = m->impact_count + 1;
+  hits lists[3];
+  for (size_t i = 0; i < 3; i++)
+    lists[i] = (hits){.particles = store + 2 * i * n, .times = store + (2 * i + 1) * n};
+  if (strcmp(value_word(v, KEY_ORBIT_MOTION), "even") == 0)
+    sort_even(m, &lists[0], &lists[1], &lists[2]);
+  else
+    sort_sequence(m, &lists[2]);
+  assign_list(a, "orbit.at_start", lists[0].particles, lists[0].count);
+  assign_list(a, "orbit.at_half", lists[1].particles, lists[1].count);
+  assign_list(a, "orbit.sequence", lists[2].particles, lists[2].count);
+  assign_list(a, "orbit.times", lists[2].times, lists[2].count);
+}
+
+static void assign_state(assignments *a, const result_motion *m) {
+  line l = {0};
+  append(&l, "start={q: ");
+  append_list(&l, m->q, m->particles);
+  append(&l, ", v: ");
+  append_list(&l, m->v, m->particles);
+  append(&l, "}");
+  add(a, &l);
+  l = (line){0};
+  append(&l, "restart={}");
+  add(a, &l);
+  if (a->failed)
+    return;
+  l = (line){0};
+  append(&l, "orbit.excited=[]");
+  add(a, &l);
+}
+
+/* A study names particles: of one between a floor and a wall it means the floor. */
+static int check_sides(const study *s, const study_values *v, const result_motion *m, message *why) {
+  for (size_t k = 0; k < m->impact_count; k++) {
+    const size_t i = (size_t)m->impacts[k].particle;
+    if (i >= (size_t)value_number(v, KEY_MODEL_PARTICLES, 0))
+      return refuse(why, EXIT_USAGE, "%s: the restart has an impact of particle %zu, which the model has not",
+                    study_name(s), i);
+    if (m->impacts[k].wall && value_number(v, KEY_MODEL_FLOOR, value_is_list(v, KEY_MODEL_FLOOR) ? i : 0) > -INFINITY)
+      return refuse(why, EXIT_USAGE,
+                    "%s: the restart has an impact at the wall of particle %zu, which has a floor, too", study_name(s),
+                    i);
+  }
+  return 0;
+}
+
+/* --- resolving --- */
+
+static int read_motion(const study *s, const study_values *v, result_motion *m, message *why) {
+  const double special = value_number(v, KEY_RESTART_SPECIAL, 0), point = value_number(v, KEY_RESTART_POINT, 0);
+  const result_where where = {.path = value_word(v, KEY_RESTART_FILE),
+                              .task = (uint64_t)value_number(v, KEY_RESTART_TASK, 0),
+                              .index = (uint64_t)(special >= 0 ? special : point),
+                              .special = special >= 0};
+  const int code = result_read_motion(&where, m, why);
+  return code ? code : check_sides(s, v, m, why);
+}
+
+/* Reads the study once more, with what it takes added to its assignments. */
+static int parse_again(const study *s, const study_values *v, const result_motion *m, assignments *a, char **text,
+                       size_t *length, message *why) {
+  study *complete = NULL;
+  double *store = calloc(6 * (m->impact_count + 1), sizeof *store);
+  if (store) {
+    assign_state(a, m);
+    assign_numbers(a, s, v, m);
+    assign_period(a, s, v, m);
+    assign_impacts(a, v, m, store);
+  }
+  int code = store && !a->failed ? study_parse(study_name(s), *text, *length, a->all, a->count, &complete, why)
+                                 : refuse(why, EXIT_RUN, "%s: no memory for its start", study_name(s));
+  char *said = code ? NULL : strdup(study_text(complete));
+  if (!code && !said)
+    code = refuse(why, EXIT_RUN, "%s: no memory for its text", study_name(s));
+  if (said) {
+    free(*text);
+    *text = said;
+    *length = strlen(said);
+  }
+  study_destroy(&complete);
+  free(store);
+  return code;
+}
+
+static int resolve(const study *s, assignments *a, char **text, size_t *length, message *why) {
+  result_motion m = {0};
+  study_values *v = study_values_create(s);
+  int code = v ? read_motion(s, v, &m, why) : refuse(why, EXIT_RUN, "%s: no memory for its values", study_name(s));
+  if (!code)
+    code = parse_again(s, v, &m, a, text, length, why);
+  if (v)
+    study_values_destroy(&v);
+  result_motion_clear(&m);
+  return code;
+}
+
+int restart_resolve(const char *path, char **text, size_t *length, const char *const *sets, size_t set_count,
+                    bool *complete, message *why) {
+  study *s = NULL;
+  *complete = false;
+  int code = study_parse(path, *text, *length, sets, set_count, &s, why);
+  if (code || !study_restarts(s)) {
+    study_destroy(&s);
+    return code;
+  }
+  assignments a = {.all = calloc(set_count + MOST_ADDED + RESULT_MOST_NUMBERS, sizeof *a.all), .given = set_count};
+  if (!a.all)
+    code = refuse(why, EXIT_RUN, "%s: no memory for its start", path);
+  for (; !code && a.count < set_count; a.count++)
+    a.all[a.count] = sets[a.count];
+  if (!code)
+    code = resolve(s, &a, text, length, why);
+  *complete = !code;
+  for (size_t i = a.given; i < a.count; i++)
+    free((char *)(uintptr_t)a.all[i]);
+  free(a.all);
+  study_destroy(&s);
+  return code;
+}

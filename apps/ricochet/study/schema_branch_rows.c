@@ -1,0 +1,194 @@
+/* The schema table, sections `branch` and `restart`: how a family of periodic motions is followed along a parameter,
+ * and where in an earlier result it starts. */
+#include "schema_rows.h"
+
+#define OF_BRANCH .kinds = "branch"
+#define NUMBER    .type = VALUE_NUMBER, .scalar = true, .no_sweep = "it says how the branch is followed"
+
+static const schema_entry rows[KEY_COUNT - KEY_BRANCH_PARAMETER] = {
+    [KEY_BRANCH_PARAMETER - KEY_BRANCH_PARAMETER] =
+        {.path = "branch.parameter",
+         .type = VALUE_TEXT,
+         .scalar = true,
+         .required = true,
+         OF_BRANCH,
+         .no_sweep = "it is text, not a number",
+         .doc = "What the branch is followed along: a number of `model`, or an element of a list there, `orbit.period` "
+                "or `orbit.energy`. It may be left out of its section."},
+    [KEY_BRANCH_FROM - KEY_BRANCH_PARAMETER] = {.path = "branch.from",
+                                                NUMBER,
+                                                .required = true,
+                                                ANY,
+                                                OF_BRANCH,
+                                                .doc = "Value of the parameter at which the branch starts."},
+    [KEY_BRANCH_TO - KEY_BRANCH_PARAMETER] =
+        {.path = "branch.to",
+         NUMBER,
+         .required = true,
+         ANY,
+         OF_BRANCH,
+         .doc = "The branch sets out towards this value. It ends where the parameter leaves its bounds."},
+    [KEY_BRANCH_LOW - KEY_BRANCH_PARAMETER] = {.path = "branch.low",
+                                               NUMBER,
+                                               .null = true,
+                                               .fallback = "null",
+                                               ANY,
+                                               OF_BRANCH,
+                                               .doc = "Lower bound of the parameter; null: the smaller one of `from` "
+                                                      "and `to`."},
+    [KEY_BRANCH_HIGH - KEY_BRANCH_PARAMETER] = {.path = "branch.high",
+                                                NUMBER,
+                                                .null = true,
+                                                .fallback = "null",
+                                                ANY,
+                                                OF_BRANCH,
+                                                .doc = "Upper bound of the parameter; null: the larger one of `from` "
+                                                       "and `to`."},
+    [KEY_BRANCH_SCALE - KEY_BRANCH_PARAMETER] = {.path = "branch.scale",
+                                                 WORD,
+                                                 .fallback = "linear",
+                                                 .words = "linear|log",
+                                                 OF_BRANCH,
+                                                 .doc = "`log`: steps are taken in the logarithm of the parameter, "
+                                                        "whose bounds lie above 0."},
+    [KEY_BRANCH_STEP - KEY_BRANCH_PARAMETER] =
+        {.path = "branch.step",
+         NUMBER,
+         .null = true,
+         .fallback = "null",
+         .low = 0,
+         .low_open = true,
+         .high = INFINITY,
+         OF_BRANCH,
+         .doc =
+             "First step along the branch, in its arclength: the root of p^2 plus the mean square of the unknowns of "
+             "the motion, with the parameter, or its logarithm, p; null: a fiftieth of the way from `from` to `to`."},
+    [KEY_BRANCH_STEP_LEAST - KEY_BRANCH_PARAMETER] = {.path = "branch.step_least",
+                                                      NUMBER,
+                                                      .null = true,
+                                                      .fallback = "null",
+                                                      .low = 0,
+                                                      .low_open = true,
+                                                      .high = INFINITY,
+                                                      OF_BRANCH,
+                                                      .doc = "Where steps would have to be shorter, the branch ends as "
+                                                             "`not_converged`; null: a millionth of `step`."},
+    [KEY_BRANCH_STEP_MOST - KEY_BRANCH_PARAMETER] =
+        {.path = "branch.step_most",
+         NUMBER,
+         .null = true,
+         .fallback = "null",
+         .low = 0,
+         .low_open = true,
+         .high = INFINITY,
+         OF_BRANCH,
+         .doc = "Longest step; null: a tenth of that way. Special points that come in pairs within one step are not "
+                "seen."},
+    [KEY_BRANCH_NATURAL - KEY_BRANCH_PARAMETER] = {.path = "branch.natural",
+                                                   FLAG,
+                                                   .fallback = "false",
+                                                   OF_BRANCH,
+                                                   .doc =
+                                                       "Steps in the parameter alone, which end at folds, instead of "
+                                                       "by pseudo-arclength."},
+    [KEY_BRANCH_POINTS - KEY_BRANCH_PARAMETER] = {.path = "branch.points",
+                                                  .type = VALUE_INTEGER,
+                                                  .scalar = true,
+                                                  .fallback = "500",
+                                                  .low = 1,
+                                                  .high = 1e7,
+                                                  .no_sweep = "it says how the branch is followed",
+                                                  OF_BRANCH,
+                                                  .doc = "Most steps of a segment of the branch."},
+    [KEY_BRANCH_TOLERANCE -
+        KEY_BRANCH_PARAMETER] = {.path = "branch.tolerance",
+                                 NUMBER,
+                                 .fallback = "1e-11",
+                                 .low = 0,
+                                 .low_open = true,
+                                 .high = 0.01,
+                                 OF_BRANCH,
+                                 .doc = "Newton's method has converged when corrections are "
+                                        "smaller than this, relative to 1 + the size of what is found."},
+    [KEY_BRANCH_MULTIPLIERS - KEY_BRANCH_PARAMETER] =
+        {.path = "branch.multipliers",
+         WORD,
+         .fallback = "true",
+         .words = "true|false|all",
+         OF_BRANCH,
+         .doc = "Floquet multipliers of every point, and the special points that they tell; `all` stores them all, "
+                "`true` the largest modulus. For states of up to 400 numbers."},
+    [KEY_BRANCH_STATES - KEY_BRANCH_PARAMETER] = {.path = "branch.states",
+                                                  FLAG,
+                                                  .fallback = "false",
+                                                  OF_BRANCH,
+                                                  .doc = "Whether the result stores the state and the impacts of every "
+                                                         "point; those of special points are stored in any case."},
+    [KEY_BRANCH_CROSS - KEY_BRANCH_PARAMETER] =
+        {.path = "branch.cross",
+         FLAG,
+         .fallback = "false",
+         OF_BRANCH,
+         .doc = "At grazing points and where impacts are lost, the family with an impact more or less is followed, "
+                "too, as a further segment."},
+    [KEY_BRANCH_SWITCH - KEY_BRANCH_PARAMETER] =
+        {.path = "branch.switch",
+         FLAG,
+         .fallback = "false",
+         OF_BRANCH,
+         .doc = "The same for both halves of the other branch at branch points, and for the family of twice the period "
+                "at period doublings of motions that are not even."},
+    [KEY_BRANCH_SEGMENTS - KEY_BRANCH_PARAMETER] = {.path = "branch.segments",
+                                                    .type = VALUE_INTEGER,
+                                                    .scalar = true,
+                                                    .fallback = "4",
+                                                    .low = 1,
+                                                    .high = 1000,
+                                                    .no_sweep = "it says how the branch is followed",
+                                                    OF_BRANCH,
+                                                    .doc = "Most segments of a task, the first one included."},
+    [KEY_RESTART_FILE - KEY_BRANCH_PARAMETER] =
+        {.path = "restart.file",
+         .type = VALUE_TEXT,
+         .scalar = true,
+         .fallback = "",
+         OF_BRANCH,
+         .no_sweep = "it is text, not a number",
+         .doc =
+             "A result of kind branch, from the current folder: the branch starts at one of its points. State, impacts "
+             "and parameters are taken from there, what varies there included, in place of what the study says."},
+    [KEY_RESTART_TASK - KEY_BRANCH_PARAMETER] = {.path = "restart.task",
+                                                 .type = VALUE_INTEGER,
+                                                 .scalar = true,
+                                                 .fallback = "0",
+                                                 .low = 0,
+                                                 .high = 1e12,
+                                                 OF_BRANCH,
+                                                 .no_sweep = "it says where the branch starts",
+                                                 .doc = "Which task of that result."},
+    [KEY_RESTART_SPECIAL - KEY_BRANCH_PARAMETER] = {.path = "restart.special",
+                                                    .type = VALUE_INTEGER,
+                                                    .scalar = true,
+                                                    .null = true,
+                                                    .fallback = "null",
+                                                    .low = 0,
+                                                    .high = 1e12,
+                                                    OF_BRANCH,
+                                                    .no_sweep = "it says where the branch starts",
+                                                    .doc = "Which of its special points."},
+    [KEY_RESTART_POINT - KEY_BRANCH_PARAMETER] = {.path = "restart.point",
+                                                  .type = VALUE_INTEGER,
+                                                  .scalar = true,
+                                                  .null = true,
+                                                  .fallback = "null",
+                                                  .low = 0,
+                                                  .high = 1e12,
+                                                  OF_BRANCH,
+                                                  .no_sweep = "it says where the branch starts",
+                                                  .doc = "Which of its points, instead; they need `branch.states` "
+                                                         "there."},
+};
+
+const schema_entry *schema_branch_row(study_key key) {
+  return &rows[key - KEY_BRANCH_PARAMETER];
+}

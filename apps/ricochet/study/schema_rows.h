@@ -1,0 +1,16 @@
+/* The files of the schema table: how its rows are written. */
+#ifndef RICOCHET_APP_SCHEMA_ROWS_H
+#define RICOCHET_APP_SCHEMA_ROWS_H
+
+#include <math.h>
+
+#include "schema.h"
+
+#define ANY  .low = -INFINITY, .high = INFINITY
+#define FLAG .type = VALUE_FLAG, .scalar = true, .no_sweep = "it is a flag, not a number"
+#define WORD .type = VALUE_WORD, .scalar = true, .no_sweep = "it is a word, not a number"
+
+/** The rows of the sections `branch` and `restart`, from KEY_BRANCH_PARAMETER on. */
+const schema_entry *schema_branch_row(study_key key);
+
+#endif

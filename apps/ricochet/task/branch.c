@@ -1,0 +1,149 @@
+/* kind: branch. A family of periodic motions along one parameter, at every grid point of the others. */
+#include "branch.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "branch_walk.h"
+#include "machine.h"
+#include "trajectory.h"
+
+struct worker {
+  study_values *values;
+  ric_poll poll;
+  branch_family family;
+  branch_guess guess;
+  bool from_state;
+};
+
+/* --- before the tasks --- */
+
+static int refuse_multipliers(const study *s, const study_values *v, message *why) {
+  char place[256];
+  const double n = value_number(v, KEY_MODEL_PARTICLES, 0);
+  if (strcmp(value_word(v, KEY_BRANCH_MULTIPLIERS), "false") == 0 || 2 * n <= RIC_FAMILY_NUMBERS)
+    return 0;
+  study_place(s, KEY_BRANCH_MULTIPLIERS, place, sizeof place);
+  return refuse(why, EXIT_USAGE, "%s = %s with %.0f particles, expected at most %d (or false)", place,
+                value_word(v, KEY_BRANCH_MULTIPLIERS), n, RIC_FAMILY_NUMBERS / 2);
+}
+
+static void branch_close(worker **w) {
+  if (!w || !*w)
+    return;
+  branch_guess_clear(&(*w)->guess);
+  branch_family_clear(&(*w)->family);
+  study_values_destroy(&(*w)->values);
+  free(*w);
+  *w = NULL;
+}
+
+static int branch_open(const study *s, ric_poll poll, worker **out, message *why) {
+  worker *w = *out = calloc(1, sizeof *w);
+  if (w) {
+    w->poll = poll;
+    w->from_state = study_gives(s, KEY_START_Q) || study_gives(s, KEY_START_V);
+  }
+  if (w && (w->values = study_values_create(s)) && branch_family_init(&w->family, s, w->values) == 0 &&
+      branch_guess_init(&w->guess, (size_t)value_number(w->values, KEY_MODEL_PARTICLES, 0)) == 0)
+    return 0;
+  branch_close(out);
+  return refuse(why, EXIT_RUN, "%s: no memory for a task", study_name(s));
+}
+
+/* A study of one task says at once what would be its only row: that the library refuses it. */
+static int check_only_task(const study *s, message *why) {
+  worker *w = NULL;
+  ric_error error = {0};
+  if (study_tasks(s) != 1)
+    return 0;
+  int code = branch_open(s, (ric_poll){0}, &w, why);
+  if (!code && branch_family_open(&w->family, w->poll, &error) != RIC_OK)
+    code = refuse(why, error.status == RIC_ENOMEM ? EXIT_RUN : EXIT_USAGE, "%s: %s", study_name(s), error.message);
+  branch_close(&w);
+  return code;
+}
+
+static int branch_plan(const study *s, kind_plan *plan, message *why) {
+  study_values *v = study_values_create(s);
+  if (!v)
+    return refuse(why, EXIT_RUN, "%s: no memory for the values of a task", study_name(s));
+  *plan = (kind_plan){.outcome = "outcome"};
+  int code = refuse_multipliers(s, v, why);
+  plan->memory = branch_family_bytes(v) + TRAJECTORY_PARTICLE_BYTES * value_number(v, KEY_MODEL_PARTICLES, 0);
+  if (!code)
+    code = machine_refuse_size(s, "a branch", plan->memory, why);
+  if (!code)
+    branch_lay_out(v, study_followed(s)->name, plan);
+  study_values_destroy(&v);
+  return code ? code : check_only_task(s, why);
+}
+
+/* --- a task --- */
+
+/* A branch that does not begin is a row with its reason. */
+static ric_status note_unborn(const kind_plan *plan, records *tails, ric_status status, const ric_error *error,
+                              int outcome, branch_result *result) {
+  if (status == RIC_ESTOPPED || status == RIC_ENOMEM)
+    return status;
+  result->outcome = outcome;
+  result->segments = 1;
+  snprintf(result->reason, sizeof result->reason, "%.*s", BRANCH_REASON_BYTES - 1, error->message);
+  return branch_put_unborn(plan, tails, outcome, result->reason);
+}
+
+static ric_status follow(worker *w, const kind_plan *plan, records *tails, branch_result *result) {
+  ric_error error = {0};
+  ric_status status = branch_family_open(&w->family, w->poll, &error);
+  if (status != RIC_OK)
+    return note_unborn(plan, tails, status, &error, BRANCH_REFUSED, result);
+  status = branch_guess_find(&w->guess, w->values, w->from_state, w->poll, &error);
+  if (status != RIC_OK)
+    return note_unborn(plan, tails, status, &error, BRANCH_FAILED_START, result);
+  return branch_walk(&w->family, &w->guess, plan, tails, result);
+}
+
+static void fill_row(const branch_result *result, const table *t, unsigned char *row) {
+  memset(row, 0, t->row_bytes);
+  row_put_word(row, table_column(t, "outcome"), result->outcome);
+  row_put_text(row, table_column(t, "reason"), result->reason);
+  row_put_integer(row, table_column(t, "points"), (long long)result->points);
+  row_put_integer(row, table_column(t, "segments"), (long long)result->segments);
+  row_put_integer(row, table_column(t, "iterations"), (long long)result->iterations);
+  row_put_integer(row, table_column(t, "jacobians"), (long long)result->jacobians);
+}
+
+static int branch_evaluate(worker *w, const kind_plan *plan, uint64_t task, unsigned char *row, records *tails) {
+  branch_result result = {0};
+  uint64_t before[BRANCH_TAILS];
+  for (size_t k = 0; k < BRANCH_TAILS; k++)
+    before[k] = tails[k].count;
+  study_values_at(w->values, task);
+  ric_status status = follow(w, plan, tails, &result);
+  branch_family_close(&w->family);
+  if (status == RIC_ESTOPPED)
+    return -1;
+  if (status != RIC_OK) { /* of a branch that does not fit, nothing is kept */
+    for (size_t k = 0; k < BRANCH_TAILS; k++)
+      records_cut(&tails[k], before[k]);
+    result = (branch_result){.outcome = BRANCH_REFUSED, .reason = "no memory for its points"};
+  }
+  fill_row(&result, &plan->rows, row);
+  return 0;
+}
+
+static int no_extra(const study *s, ric_poll poll, extra_rows *extra, message *why) {
+  (void)s;
+  (void)poll;
+  (void)why;
+  *extra = (extra_rows){0};
+  return 0;
+}
+
+const kind kind_branch = {.name = "branch",
+                          .plan = branch_plan,
+                          .open = branch_open,
+                          .evaluate = branch_evaluate,
+                          .close = branch_close,
+                          .extra = no_extra};

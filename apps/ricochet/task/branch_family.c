@@ -1,0 +1,197 @@
+#include "branch_family.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double pi = 3.14159265358979323846;
+
+/* Steps where the study gives none, as parts of the way from the start to the other end. */
+static const double first_part = 0.02, most_part = 0.1, least_part = 1e-6 /* of the first step */;
+
+/* --- parameters --- */
+
+double branch_family_parameter(const branch_family *b, double value) {
+  return b->log ? log(value) : value;
+}
+
+/* The values that the study names come back as the same bits, whatever rounding does to the curve's parameter: a bound
+ * may be the end of what the model takes. */
+double branch_family_value(const branch_family *b, double parameter) {
+  static const study_key named[] = {KEY_BRANCH_FROM, KEY_BRANCH_TO, KEY_BRANCH_LOW, KEY_BRANCH_HIGH};
+  for (size_t i = 0; i < sizeof named / sizeof *named; i++) {
+    const double value = value_number(b->values, named[i], 0), at = branch_family_parameter(b, value);
+    if (isfinite(at) && fabs(parameter - at) <= 4 * DBL_EPSILON * (1 + fabs(at)))
+      return value;
+  }
+  return b->log ? exp(parameter) : parameter;
+}
+
+bool branch_family_gives_energy(const study_values *v) {
+  return value_number(v, KEY_ORBIT_ENERGY, 0) > -INFINITY;
+}
+
+static ric_motion_kind motion_of(const study_values *v) {
+  const char *word = value_word(v, KEY_ORBIT_MOTION);
+  if (strcmp(word, "forced") == 0)
+    return RIC_MOTION_FORCED;
+  if (strcmp(word, "autonomous") == 0)
+    return RIC_MOTION_AUTONOMOUS;
+  return strcmp(word, "conservative") == 0 ? RIC_MOTION_CONSERVATIVE : RIC_MOTION_EVEN;
+}
+
+double branch_family_period(const study_values *v) {
+  const double multiple = value_number(v, KEY_ORBIT_FORCING_PERIODS, 0);
+  if (multiple > 0 || !value_present(v, KEY_ORBIT_PERIOD))
+    return (multiple > 0 ? multiple : 1) * (2 * pi / value_number(v, KEY_MODEL_FREQUENCY, 0));
+  return value_number(v, KEY_ORBIT_PERIOD, 0);
+}
+
+static double given_of(const study_values *v) {
+  return branch_family_gives_energy(v) ? value_number(v, KEY_ORBIT_ENERGY, 0) : branch_family_period(v);
+}
+
+/* Puts a parameter into the values, and these into the system. */
+static ric_status set(ric_system *system, const double *p, double *given, void *user, ric_error *error) {
+  branch_family *b = user;
+  const double value = branch_family_value(b, p[0]);
+  if (schema_check(schema_row(b->followed->key), value) != FIT_OK)
+    return ric_fail(error, RIC_ENUMERIC, "%s = %g is out of range", b->followed->name, value);
+  study_values_follow(b->values, value);
+  *given = given_of(b->values);
+  if (motion_of(b->values) != RIC_MOTION_AUTONOMOUS && !isfinite(*given))
+    return ric_fail(error, RIC_ENUMERIC, "%s = %g: the force has no period", b->followed->name, value);
+  if (b->followed->key == KEY_ORBIT_PERIOD || b->followed->key == KEY_ORBIT_ENERGY)
+    return RIC_OK;
+  lattice_model_read(&b->model, b->values);
+  RIC_TRY(ric_system_set_lattice(system, &b->model.lattice, error));
+  return ric_system_set_obstacles(system, b->model.obstacles, b->model.obstacle_count, error);
+}
+
+/* --- life --- */
+
+static size_t count_hits(const study_values *v) {
+  return value_count(v, KEY_ORBIT_AT_START) + value_count(v, KEY_ORBIT_AT_HALF) + value_count(v, KEY_ORBIT_SEQUENCE);
+}
+
+int branch_family_init(branch_family *b, const study *s, study_values *v) {
+  *b = (branch_family){.values = v,
+                       .followed = study_followed(s),
+                       .log = strcmp(value_word(v, KEY_BRANCH_SCALE), "log") == 0,
+                       .hits = calloc(count_hits(v) + 1, sizeof *b->hits),
+                       .times = calloc(value_count(v, KEY_ORBIT_TIMES) + 1, sizeof *b->times)};
+  return b->hits && b->times ? lattice_model_init(&b->model, v) : -1;
+}
+
+void branch_family_close(branch_family *b) {
+  ric_family_destroy(&b->family);
+  ric_system_destroy(&b->system);
+}
+
+void branch_family_clear(branch_family *b) {
+  branch_family_close(b);
+  lattice_model_clear(&b->model);
+  free(b->hits);
+  free(b->times);
+  *b = (branch_family){0};
+}
+
+/* --- the problem --- */
+
+/* Obstacles of a list of particles: their floors, or where `or_wall` says so their walls if they have no floor. */
+static ric_status read_hits(const branch_family *b, study_key key, bool or_wall, size_t *hits, ric_error *error) {
+  for (size_t i = 0; i < value_count(b->values, key); i++) {
+    const size_t particle = (size_t)value_number(b->values, key, i);
+    hits[i] = lattice_model_obstacle(&b->model, particle, +1);
+    if (hits[i] == SIZE_MAX && or_wall)
+      hits[i] = lattice_model_obstacle(&b->model, particle, -1);
+    if (hits[i] == SIZE_MAX)
+      return ric_fail(error, RIC_EINVAL, "particle %zu has no obstacle to hit", particle);
+  }
+  return RIC_OK;
+}
+
+/* Nothing jumps at a Hertz contact: the particles that press it are part of the guess only. */
+static bool is_compliant(const study_values *v) {
+  return value_number(v, KEY_MODEL_HERTZ, 0) > 0;
+}
+
+static ric_status describe(branch_family *b, ric_poll poll, ric_family_problem *problem, ric_error *error) {
+  const study_values *v = b->values;
+  const bool jumps = !is_compliant(v);
+  const size_t starts = value_count(v, KEY_ORBIT_AT_START), halves = value_count(v, KEY_ORBIT_AT_HALF);
+  RIC_TRY(read_hits(b, KEY_ORBIT_AT_START, false, b->hits, error));
+  RIC_TRY(read_hits(b, KEY_ORBIT_AT_HALF, false, b->hits + starts, error));
+  RIC_TRY(read_hits(b, KEY_ORBIT_SEQUENCE, true, b->hits + starts + halves, error));
+  for (size_t i = 0; i < value_count(v, KEY_ORBIT_TIMES); i++)
+    b->times[i] = value_number(v, KEY_ORBIT_TIMES, i);
+  *problem = (ric_family_problem){.system = b->system,
+                                  .motion = {.kind = motion_of(v),
+                                             .energy_given = branch_family_gives_energy(v),
+                                             .at_start = b->hits,
+                                             .start_count = jumps ? starts : 0,
+                                             .at_half = b->hits + starts,
+                                             .half_count = jumps ? halves : 0,
+                                             .sequence = b->hits + starts + halves,
+                                             .count = jumps ? value_count(v, KEY_ORBIT_SEQUENCE) : 0,
+                                             .flow = ric_flow_options_default(),
+                                             .poll = poll},
+                                  .set = set,
+                                  .user = b,
+                                  .parameters = 1,
+                                  .given = given_of(v)};
+  return RIC_OK;
+}
+
+static double bound(const branch_family *b, study_key key, double fallback) {
+  const double value = value_number(b->values, key, 0);
+  return branch_family_parameter(b, value > -INFINITY ? value : fallback);
+}
+
+static double step(const study_values *v, study_key key, double fallback) {
+  const double value = value_number(v, key, 0);
+  return value > -INFINITY ? value : fallback;
+}
+
+static ric_family_options options_of(const branch_family *b, ric_poll poll) {
+  const study_values *v = b->values;
+  const double from = value_number(v, KEY_BRANCH_FROM, 0), to = value_number(v, KEY_BRANCH_TO, 0);
+  const double way = fabs(branch_family_parameter(b, to) - branch_family_parameter(b, from));
+  ric_family_options o = ric_family_options_default();
+  o.multipliers = strcmp(value_word(v, KEY_BRANCH_MULTIPLIERS), "false") != 0;
+  o.curve.natural = value_flag(v, KEY_BRANCH_NATURAL);
+  o.curve.p_low = bound(b, KEY_BRANCH_LOW, fmin(from, to));
+  o.curve.p_high = bound(b, KEY_BRANCH_HIGH, fmax(from, to));
+  o.curve.direction = to > from ? 1 : -1;
+  o.curve.points = (size_t)value_number(v, KEY_BRANCH_POINTS, 0);
+  o.curve.newton_tol = value_number(v, KEY_BRANCH_TOLERANCE, 0);
+  o.curve.poll = poll;
+  /* A step that is given moves the defaults of the others. */
+  const double least = step(v, KEY_BRANCH_STEP_LEAST, 0), most = step(v, KEY_BRANCH_STEP_MOST, INFINITY);
+  o.curve.step = step(v, KEY_BRANCH_STEP, fmax(least, fmin(most, first_part * way)));
+  o.curve.step_least = least > 0 ? least : least_part * o.curve.step;
+  o.curve.step_most = most < INFINITY ? most : fmax(o.curve.step, most_part * way);
+  return o;
+}
+
+ric_status branch_family_open(branch_family *b, ric_poll poll, ric_error *error) {
+  ric_family_problem problem;
+  const ric_family_options options = options_of(b, poll);
+  lattice_model_read(&b->model, b->values);
+  RIC_TRY(ric_system_create_lattice(&b->model.lattice, b->model.obstacles, b->model.obstacle_count, &b->system, error));
+  RIC_TRY(describe(b, poll, &problem, error));
+  return ric_family_create(&problem, &options, &b->family, error);
+}
+
+/* Matrices of the unknowns, of which every arc of a motion that is not even brings a state, tangent vectors, and
+ * matrices of the multipliers. */
+double branch_family_bytes(const study_values *v) {
+  const double n = value_number(v, KEY_MODEL_PARTICLES, 0);
+  const bool extends = value_flag(v, KEY_BRANCH_CROSS) || value_flag(v, KEY_BRANCH_SWITCH);
+  const double segments = extends ? value_number(v, KEY_BRANCH_SEGMENTS, 0) : 1;
+  const double arcs = 1 + (double)value_count(v, KEY_ORBIT_SEQUENCE) + (extends ? 1 : 0);
+  const double unknowns = 2 * n * arcs + 8;
+  return 8 * segments * (8 * unknowns * unknowns + 12 * (2 * n) * (2 * n)) + n * LATTICE_MODEL_BYTES;
+}

@@ -1,0 +1,42 @@
+/* The family of motions that a study of kind `branch` follows, for the values of one task. */
+#ifndef RICOCHET_APP_BRANCH_FAMILY_H
+#define RICOCHET_APP_BRANCH_FAMILY_H
+
+#include <stdbool.h>
+
+#include "lattice_model.h"
+
+typedef struct branch_family {
+  study_values *values; /* borrowed; what is followed moves in them */
+  const study_parameter *followed;
+  bool log; /* the curve's parameter is the logarithm */
+  lattice_model model;
+  ric_system *system;
+  size_t *hits;  /* obstacles of orbit.at_start, at_half and sequence, one list after the other */
+  double *times; /* of the sequence */
+  ric_family *family;
+} branch_family;
+
+/** Makes room for the values. @returns 0, or -1 when out of memory. */
+int branch_family_init(branch_family *b, const study *s, study_values *v);
+void branch_family_clear(branch_family *b);
+
+/** The system and the family of the present task, at the start of the branch.
+ *  @returns as ric_family_create, RIC_EINVAL for impacts without an obstacle */
+ric_status branch_family_open(branch_family *b, ric_poll poll, ric_error *error);
+/** Destroys both. */
+void branch_family_close(branch_family *b);
+
+/** The curve's parameter for a value of the study's, and back. */
+double branch_family_parameter(const branch_family *b, double value);
+double branch_family_value(const branch_family *b, double parameter);
+
+/** Whether nothing is given but the energy; then the period is a guess. */
+bool branch_family_gives_energy(const study_values *v);
+/** The period that the values say: of the force, or orbit.period. */
+double branch_family_period(const study_values *v);
+
+/** Bytes that a rank computes with. */
+double branch_family_bytes(const study_values *v);
+
+#endif

@@ -1,0 +1,24 @@
+/* The first guess of a branch: where the equations are solved from. */
+#ifndef RICOCHET_APP_BRANCH_GUESS_H
+#define RICOCHET_APP_BRANCH_GUESS_H
+
+#include "branch_family.h"
+
+/** First state [particles] and period. */
+typedef struct branch_guess {
+  double *q, *v;
+  double period;
+} branch_guess;
+
+/** @returns 0, or -1 when out of memory. */
+int branch_guess_init(branch_guess *g, size_t particles);
+void branch_guess_clear(branch_guess *g);
+
+/** Guesses for the present values: the state of the section `start`; particles that swing at the amplitude at which one
+ *  alone has the period; the orbit of the linear chain with the impacts of the study, at Hertz contacts with the
+ *  particles that press them at rest as deep as their speed takes them; else rest.
+ *  @param from_state  the study gives a state
+ *  @returns RIC_EINVAL where there is no such motion, with the reason; RIC_ESTOPPED */
+ric_status branch_guess_find(branch_guess *g, const study_values *v, bool from_state, ric_poll poll, ric_error *error);
+
+#endif

@@ -1,0 +1,83 @@
+/* Studies of kind: branch: what is followed, and how it moves. */
+#include "study_cases.h"
+
+static const char branch[] = "kind: branch\n"
+                             "model: {type: chain, particles: 3, floor: [-1, -2, null]}\n"
+                             "orbit: {period: 5, at_start: [0]}\n"
+                             "branch: {parameter: model.gamma, from: 0.1, to: 0}\n"
+                             "sweep: {parameter: orbit.period, values: [5, 6]}\n";
+
+static void the_parameter_may_be_left_out_and_moves_within_a_task(void **state) {
+  (void)state;
+  study *s = parsed(branch, NULL, 0);
+  assert_string_equal(study_followed(s)->name, "model.gamma");
+  assert_true(study_followed(s)->key == KEY_MODEL_GAMMA && study_followed(s)->item == -1);
+  assert_false(study_restarts(s));
+  assert_int_equal(study_tasks(s), 2);
+  study_values *v = study_values_create(s);
+  assert_non_null(v);
+  assert_true(value_number(v, KEY_MODEL_GAMMA, 0) == 0.1);
+  study_values_follow(v, 0.05);
+  assert_true(value_number(v, KEY_MODEL_GAMMA, 0) == 0.05 && value_number(v, KEY_ORBIT_PERIOD, 0) == 5);
+  study_values_at(v, 1);
+  assert_true(value_number(v, KEY_MODEL_GAMMA, 0) == 0.1 && value_number(v, KEY_ORBIT_PERIOD, 0) == 6);
+  study_values_destroy(&v);
+  study_destroy(&s);
+}
+
+static void elements_of_lists_can_be_followed(void **state) {
+  (void)state;
+  static const char *const sets[] = {"branch.parameter=model.floor[1]", "branch.to=-3", "branch.from=-2",
+                                     "model.gamma=0.2"};
+  study *s = parsed(branch, sets, 4);
+  assert_true(study_followed(s)->key == KEY_MODEL_FLOOR && study_followed(s)->item == 1);
+  study_values *v = study_values_create(s);
+  assert_non_null(v);
+  study_values_follow(v, -2.5);
+  assert_true(value_number(v, KEY_MODEL_FLOOR, 0) == -1 && value_number(v, KEY_MODEL_FLOOR, 1) == -2.5);
+  study_values_destroy(&v);
+  study_destroy(&s);
+}
+
+static void what_is_not_said_is_known_to_be_a_default(void **state) {
+  (void)state;
+  const char *set = "start.q=0.5";
+  study *s = parsed(branch, &set, 1);
+  assert_true(study_gives(s, KEY_START_Q) && !study_gives(s, KEY_START_V));
+  assert_true(study_gives(s, KEY_MODEL_GAMMA) && study_gives(s, KEY_ORBIT_PERIOD));
+  study_destroy(&s);
+}
+
+static void a_study_that_restarts_need_not_say_where_it_starts(void **state) {
+  (void)state;
+  static const char text[] = "kind: branch\nmodel: {type: chain, particles: 3, gamma: 0}\norbit: {motion: even}\n"
+                             "branch: {parameter: orbit.period, to: 5}\nrestart: {file: r.h5, point: 3}\n";
+  study *s = parsed(text, NULL, 0);
+  assert_true(study_restarts(s) && study_followed(s)->key == KEY_ORBIT_PERIOD);
+  study_values *v = study_values_create(s);
+  assert_non_null(v);
+  assert_string_equal(value_word(v, KEY_RESTART_FILE), "r.h5");
+  study_values_destroy(&v);
+  study_destroy(&s);
+  const char *set = "restart={}";
+  assert_refused(text, strlen(text), &set, 1, "s.yaml: ", "missing key orbit.period", "");
+}
+
+static void other_kinds_follow_nothing(void **state) {
+  (void)state;
+  study *s = parsed(base_study, NULL, 0);
+  assert_int_equal(study_followed(s)->key, KEY_COUNT);
+  assert_false(study_restarts(s));
+  study_destroy(&s);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(the_parameter_may_be_left_out_and_moves_within_a_task),
+      cmocka_unit_test(elements_of_lists_can_be_followed),
+      cmocka_unit_test(what_is_not_said_is_known_to_be_a_default),
+      cmocka_unit_test(a_study_that_restarts_need_not_say_where_it_starts),
+      cmocka_unit_test(other_kinds_follow_nothing),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
