@@ -57,7 +57,13 @@ ABSENT = {
     "multiplier_max": " (the study did not ask for orbit.stable)",
 }
 
-PARAMETER_LABEL = {"model.gamma": r"coupling $\gamma$", "orbit.period": r"period $T$"}
+PARAMETER_LABEL = {
+    "model.gamma": r"coupling $\gamma$",
+    "orbit.period": r"period $T$",
+    "model.hertz": r"stiffness $k$ of the Hertz contacts",
+    "model.frequency": r"frequency $\omega$ of the force",
+    "model.force": "amplitude of the force",
+}
 PARAMETER_SYMBOL = {"model.gamma": r"\gamma", "orbit.period": "T"}
 
 
