@@ -194,7 +194,7 @@ static ric_status scan_coordinates(scan *s, const ric_segment *piece) {
     size_t i = o->coordinate - piece->first;
     if (i >= piece->coordinates)
       break;
-    double least = o->side > 0 ? l->lower[i] - o->position : o->position - l->upper[i];
+    double least = obstacle_least_gap(o, l->lower[i], l->upper[i]);
     if (!(least > l->grazing_tol) || flow_contact(s->flow, j) != CONTACT_OPEN)
       RIC_TRY(scan_contact(s, piece, j));
   }

@@ -109,6 +109,11 @@ static inline bool system_complies(const ric_system *s, size_t obstacle) {
 /** How many obstacles are compliant. */
 size_t system_compliant_obstacles(const ric_system *s);
 
+/** A lower bound of an obstacle's gap where its coordinate lies between two bounds. */
+static inline double obstacle_least_gap(const ric_obstacle *o, double lower, double upper) {
+  return o->side > 0 ? lower - o->position : o->position - upper;
+}
+
 /** First position in by_coordinate whose obstacle has a coordinate >= `coordinate`. */
 size_t system_first_obstacle(const ric_system *s, size_t coordinate);
 

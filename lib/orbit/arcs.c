@@ -11,7 +11,7 @@ static ric_status check_obstacle(const ric_system *s, const char *where, size_t 
   if (obstacle >= s->obstacle_count)
     return ric_fail(error, RIC_EINVAL, "%s names obstacle %zu, expected one below %zu", where, obstacle,
                     s->obstacle_count);
-  if (s->obstacles && isfinite(s->obstacles[obstacle].stiffness))
+  if (system_complies(s, obstacle))
     return ric_fail(error, RIC_EINVAL, "%s names obstacle %zu, which is compliant: nothing jumps there", where,
                     obstacle);
   return RIC_OK;

@@ -161,7 +161,7 @@ static void look_at_coordinates(shooting_gaps *g, const ric_segment *piece, doub
     size_t i = o->coordinate - piece->first;
     if (i >= piece->coordinates)
       break;
-    double least = o->side > 0 ? g->lower[i] - o->position : o->position - g->upper[i];
+    double least = obstacle_least_gap(o, g->lower[i], g->upper[i]);
     if (o->stiffness == INFINITY && (g->hit[j] || least < g->free.value))
       look_at_part(g, piece, j, 0, end, INFINITY, 0);
   }

@@ -74,8 +74,9 @@ static ric_status jump(ric_shooting *s, const piece_run *run, ric_error *error) 
   ric_saltation_kind kind = RIC_SALTATION_GRAZING;
   if (rate < 0) {
     for (size_t j = 0; j < s->system->obstacle_count; j++) {
-      bool complies = s->system->obstacles && isfinite(s->system->obstacles[j].stiffness);
-      k->contact[j] = complies && ric_system_gap(s->system, j, run->end, s->x) < 0 ? CONTACT_PRESSED : CONTACT_OPEN;
+      k->contact[j] = system_complies(s->system, j) && ric_system_gap(s->system, j, run->end, s->x) < 0
+                          ? CONTACT_PRESSED
+                          : CONTACT_OPEN;
     }
     RIC_TRY(tangent_jump_apply(&k->jump, run->end, &group, s->grazing_tol, k->contact, k->contact, s->x, s->x + n, &d,
                                &kind, error));
