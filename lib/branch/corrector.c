@@ -8,10 +8,20 @@
 /* Corrections within this of the tolerance that no longer shrink are rounding of the residual. */
 static const double rounding = 1000;
 
+/* Rows of natural steps and of bounds hold the parameter: exactly, since problems may be undefined just beside it. */
+static bool holds_parameter(const ric_curve *c, const double *row) {
+  for (size_t i = 0; i < c->problem.unknowns; i++)
+    if (row[i] != 0)
+      return false;
+  return true;
+}
+
 /* One correction. @param size  set to its length over 1 + |x| */
 static ric_status correct(ric_curve *c, const double *row, double *x, double *size, ric_error *error) {
   RIC_TRY(bordered_factor(&c->linear, x, row, error));
   bordered_correction(&c->linear, c->z);
+  if (holds_parameter(c, row))
+    c->z[c->problem.unknowns] = 0;
   for (size_t i = 0; i < c->linear.size; i++)
     x[i] += c->z[i];
   *size = curve_norm(c, c->z) / (1 + curve_norm(c, x));

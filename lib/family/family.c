@@ -56,25 +56,38 @@ static ric_status residual_beside(ric_family *f, const double *at, size_t by, do
   return ric_shooting_residual(f->shooting, z, f->given, F, NULL, NULL, error);
 }
 
-/* Derivative of F by a parameter: central differences, or one-sided ones of second order at the end of its range. */
+/* Whether there is no residual beside the point: other failures are the caller's. */
+static bool is_missing(ric_status status) {
+  return status == RIC_EINVAL || status == RIC_ENUMERIC;
+}
+
+/* Derivative of F by a parameter at `at`: central differences, or one-sided ones of second order at the end of its
+ * range. */
+static ric_status slopes(ric_family *f, const double *at, const double *z, size_t by, const double *F, double *F_p,
+                         ric_error *error) {
+  const double h = parameter_step * (1 + fabs(at[by]));
+  ric_status below = residual_beside(f, at, by, -h, z, f->below, error);
+  if (below != RIC_OK && !is_missing(below))
+    return below;
+  ric_status above = residual_beside(f, at, by, h, z, f->above, error);
+  if (above != RIC_OK && (!is_missing(above) || below != RIC_OK))
+    return is_missing(above) ? RIC_ENUMERIC : above;
+  for (size_t i = 0; below == RIC_OK && above == RIC_OK && i < f->unknowns; i++)
+    F_p[i] = (f->above[i] - f->below[i]) / (2 * h);
+  if (below == RIC_OK && above == RIC_OK)
+    return RIC_OK;
+  double side = above == RIC_OK ? 1 : -1, *near = side > 0 ? f->above : f->below, *far = side > 0 ? f->below : f->above;
+  RIC_TRY(residual_beside(f, at, by, 2 * side * h, z, far, error));
+  for (size_t i = 0; i < f->unknowns; i++)
+    F_p[i] = side * (4 * near[i] - far[i] - 3 * F[i]) / (2 * h);
+  return RIC_OK;
+}
+
 static ric_status difference(ric_family *f, const double *z, size_t by, const double *F, double *F_p,
                              ric_error *error) {
-  const double at[2] = {f->at[0], f->at[1]}, h = parameter_step * (1 + fabs(at[by]));
-  bool below = residual_beside(f, at, by, -h, z, f->below, error) == RIC_OK;
-  bool above = residual_beside(f, at, by, h, z, f->above, error) == RIC_OK;
-  double side = above ? 1 : -1;
-  ric_status status = below || above ? RIC_OK : RIC_ENUMERIC;
-  if (below && above)
-    for (size_t i = 0; i < f->unknowns; i++)
-      F_p[i] = (f->above[i] - f->below[i]) / (2 * h);
-  else if (status == RIC_OK) {
-    double *near = above ? f->above : f->below, *far = above ? f->below : f->above;
-    status = residual_beside(f, at, by, 2 * side * h, z, far, error);
-    for (size_t i = 0; status == RIC_OK && i < f->unknowns; i++)
-      F_p[i] = side * (4 * near[i] - far[i] - 3 * F[i]) / (2 * h);
-  }
-  RIC_TRY(family_set(f, at[0], at[1], error));
-  return status;
+  const double at[2] = {f->at[0], f->at[1]};
+  RIC_TRY(slopes(f, at, z, by, F, F_p, error));
+  return family_set(f, at[0], at[1], error);
 }
 
 ric_status family_residual(ric_family *f, const double *z, size_t by, double *F, double *J, double *F_p,

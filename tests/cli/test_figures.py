@@ -86,6 +86,18 @@ orbit: {period: 1.5 pi, at_start: [2]}
 branch: {parameter: model.gamma, from: 0, to: 0.15}
 sweep: {parameter: model.hertz, from: 100, to: 1e5, points: 9, scale: log}
 """,
+    "rigid_states": """kind: branch
+title: shapes under the impact law
+model: {type: chain, particles: 6, ends: periodic, gamma: 0, floor: -1}
+orbit: {period: 1.5 pi, at_start: [3]}
+branch: {parameter: model.gamma, from: 0, to: 0.19, states: true}
+""",
+    "soft_states": """kind: branch
+title: shapes under Hertz's law
+model: {type: chain, particles: 6, ends: periodic, gamma: 0, floor: -1, hertz: 100}
+orbit: {period: 1.5 pi, at_start: [3]}
+branch: {parameter: model.gamma, from: 0, to: 0.15, states: true}
+""",
     "logarithmic_branch": """kind: branch
 title: along the logarithm, without multipliers
 model: {type: chain, particles: 4, ends: periodic, gamma: 0.1, floor: -1}
@@ -150,6 +162,7 @@ FIGURES = [
     ("plot_branch.py", "branches", []),
     ("plot_branch.py", "branches", ["--y", "amplitude", "--tasks", "0", "8"]),
     ("plot_branch.py", "logarithmic_branch", ["--y", "period"]),
+    ("plot_laws.py", "soft_states", ["--impacts", "rigid_states.h5", "--couplings", "3"]),
 ]
 
 # script, file, words of the message
@@ -167,6 +180,8 @@ REFUSALS = [
     ("plot_stability.py", "stable.h5", "1 swept parameters (model.gamma), this figure needs 2"),
     ("plot_lyapunov.py", "family.h5", "not a result of kind trajectory"),
     ("plot_branch.py", "family.h5", "not a result of kind branch"),
+    ("plot_laws.py", "family.h5", "not a branch with branch.states: true"),
+    ("plot_laws.py", "branches.h5", "not a branch with branch.states: true"),
     ("plot_branch.py", "unborn.h5", "no branch of it begins (failed_start)"),
 ]
 
@@ -254,7 +269,8 @@ def default_names_stand_beside_the_result(scripts, folder):
 
 def refusal_is_one_line(scripts, folder, script, name, words):
     before = set(os.listdir(folder))
-    done = call(scripts, folder, script, name, "-o", "refused_" + script)
+    others = ["--impacts", "rigid_states.h5"] if script == "plot_laws.py" else []
+    done = call(scripts, folder, script, name, "-o", "refused_" + script, *others)
     assert done.returncode == 2, f"exit {done.returncode}"
     assert done.stderr.count("\n") == 1 and done.stderr.startswith(f"{script}: {name}: "), done.stderr
     assert words in done.stderr, done.stderr
@@ -270,9 +286,13 @@ def unwritable_output_is_one_line(scripts, folder):
 
 def help_names_the_datasets(scripts, folder, script):
     done = call(scripts, folder, script, "--help")
-    kind = {"plot_lyapunov.py": "trajectory", "plot_branch.py": "branch"}.get(script, "orbits")
+    table = {
+        "plot_lyapunov.py": "trajectory/outcome",
+        "plot_branch.py": "branch/outcome",
+        "plot_laws.py": "branch/point_parameter",
+    }.get(script, "orbits/outcome")
     assert (
-        done.returncode == 0 and f"/{kind}/outcome" in done.stdout and "--output" in done.stdout
+        done.returncode == 0 and f"/{table}" in done.stdout and "--output" in done.stdout
     ), done.stdout
 
 

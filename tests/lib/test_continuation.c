@@ -263,6 +263,36 @@ static void a_fold_just_before_a_bound_is_gone_round(void **state) {
   }
 }
 
+/* Equations that have no value below p = 0: neither at the start nor at a bound does p move by a bit. */
+static ric_status half_line(const double *u, double p, double *F, double *J, double *F_p, void *user,
+                            ric_error *error) {
+  (void)user;
+  if (p < 0)
+    return ric_fail(error, RIC_ENUMERIC, "p = %g, expected >= 0", p);
+  F[0] = u[0] - 3 * p;
+  F[1] = u[1] + u[0] / 7 - p;
+  J[0] = 1, J[1] = 0, J[2] = 1.0 / 7, J[3] = 1;
+  F_p[0] = -3;
+  F_p[1] = -1;
+  return RIC_OK;
+}
+
+static void parameters_that_are_held_stay_exactly(void **state) {
+  (void)state;
+  ric_curve_options options = defaults();
+  options.p_low = 0;
+  options.p_high = 1.0 / 3;
+  const ric_curve_problem problem = {.unknowns = 2, .residual = half_line};
+  for (double guess = -1; guess < 1; guess += 0.1) {
+    double u[2] = {guess, guess / 3};
+    walked *w = walk(&problem, &options, u, 0, NULL);
+    assert_true(w->points[0].p == 0);
+    assert_int_equal(w->run.end, RIC_CURVE_BOUND);
+    assert_true(last(w)->p == options.p_high);
+    free(w);
+  }
+}
+
 static void a_start_at_a_fold_needs_a_tangent(void **state) {
   (void)state;
   ric_curve *curve = made(&circle, NULL);
@@ -324,6 +354,7 @@ int main(void) {
       cmocka_unit_test(steps_grow_on_a_straight_curve_and_shrink_where_it_turns),
       cmocka_unit_test(a_bound_just_ahead_of_the_start_is_landed_on),
       cmocka_unit_test(a_fold_just_before_a_bound_is_gone_round),
+      cmocka_unit_test(parameters_that_are_held_stay_exactly),
       cmocka_unit_test(a_start_at_a_fold_needs_a_tangent),
       cmocka_unit_test(walks_stay_on_their_curve_beside_another),
       cmocka_unit_test(names_are_those_of_the_lists),

@@ -10,14 +10,18 @@
  *   fold               the family turns back
  *   branch_point       another family of the same kind crosses
  *   symmetry_breaking  a pair of multipliers of an even motion passes +1 by motions that are not even
- *   energy_extreme     the same where no family branches: among the motions of neighbouring periods the energy of this
- * one is extreme (dE/dT = 0) period_doubling    a multiplier passes -1 torus              a pair of complex multipliers
- * leaves the circle or comes back; of even and conservative motions two pairs meet there resonance          a pair of
- * multipliers of an even motion passes a third or fourth root of unity: motions of three or four times the period
- * branch off grazing            an obstacle is touched away from the impacts of the family: one that it does not hit,
- * or again one that it hits impact_lost        an impact becomes a touch: its gap rate goes to zero, and the gap is
- * smallest there impulse_sign       the same where the free motion would go through the obstacle: the impulse changes
- * its sign order              two impacts that follow each other come to one time
+ *   energy_extreme     the same where no family branches: among motions of neighbouring periods the energy of this
+ *                      one is extreme (dE/dT = 0)
+ *   period_doubling    a multiplier passes -1
+ *   torus              a pair of complex multipliers leaves the circle or comes back; of even and conservative
+ *                      motions two pairs meet there
+ *   resonance          a pair of multipliers of an even motion passes a third or fourth root of unity: motions of
+ *                      three or four times the period branch off
+ *   grazing            an obstacle is touched away from the impacts of the family: one that it does not hit, or
+ *                      again one that it hits
+ *   impact_lost        an impact becomes a touch: its gap rate goes to zero, and the gap is smallest there
+ *   impulse_sign       the same where the free motion would go through the obstacle: the impulse changes its sign
+ *   order              two impacts that follow each other come to one time
  *
  * Zeros that come in pairs within one step are not seen; `step_most` is the user's means against it. */
 #ifndef RICOCHET_FAMILY_H

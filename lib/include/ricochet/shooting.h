@@ -9,9 +9,10 @@
  * Four kinds of motion differ in how they close:
  *
  *   even          about t = 0 and t = T/2, of systems that run backwards as they run forwards (q' = u, no damping,
- * forcing by cosines): half a period is enough. At t = 0 and T/2 coordinates are at rest, or hit their obstacle and
- * change sign of speed, any number of them together: the orbits of [JAP] (7)-(8), with one unknown and one equation per
- * coordinate. The period or the energy is given. forced        with a given period, a multiple of that of the forcing.
+ *                 forcing by cosines): half a period is enough. At t = 0 and T/2 coordinates are at rest, or hit
+ *                 their obstacle and change sign of speed, any number of them together: the orbits of [JAP] (7)-(8),
+ *                 with one unknown and one equation per coordinate. The period or the energy is given.
+ *   forced        with a given period, a multiple of that of the forcing.
  *   autonomous    without forcing, with an unknown period: isolated motions of self-excited systems.
  *   conservative  without forcing or losses: motions come in families, the period or the energy is given. Conservation
  *                 makes one equation redundant: one unknown lambda, times the gradient of the energy, is added to the
