@@ -18,7 +18,7 @@ void carried_clear(carried *c) {
 static ric_status make_room(ric_trajectory *tr, size_t columns, ric_error *error) {
   carried *c = &tr->carried;
   size_t size = tr->system->coordinates + tr->system->speeds, count = tr->system->obstacle_count;
-  if (c->jump.columns == columns)
+  if (c->jump.columns >= columns)
     return RIC_OK;
   carried_clear(c);
   RIC_TRY(tangent_jump_init(&c->jump, tr->system, &tr->law, columns, error));

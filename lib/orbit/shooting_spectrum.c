@@ -27,8 +27,9 @@ ric_status shooting_spectrum_create(ric_shooting *s, shooting_spectrum **spectru
     k->contact = calloc(s->system->obstacle_count + 1, 1);
     k->bordered = gsl_matrix_alloc(bordered, bordered);
     k->order = gsl_permutation_alloc(bordered);
+    k->tau = malloc(2 * bordered * sizeof *k->tau);
   }
-  if (!k || !k->matrix || !k->contact || !k->bordered || !k->order) {
+  if (!k || !k->matrix || !k->contact || !k->bordered || !k->order || !k->tau) {
     shooting_spectrum_destroy(spectrum);
     return ric_fail(error, RIC_ENOMEM, "no memory for a matrix of size %zu", size);
   }
@@ -52,6 +53,7 @@ void shooting_spectrum_destroy(shooting_spectrum **spectrum) {
     gsl_matrix_free(k->bordered);
   gsl_permutation_free(k->order);
   free(k->matrix);
+  free(k->tau);
   free(k->contact);
   free(k);
   *spectrum = NULL;
@@ -204,14 +206,23 @@ ric_status shooting_matrix(ric_shooting *s, const double *z, double given, ric_e
   return carry(s, z, period, error);
 }
 
+/* By QR with column pivoting, since the LU of GSL allocates: each reflection of Q has the determinant -1, one with
+ * tau = 0 is the identity. */
 static double determinant(const shooting_spectrum *k, size_t size) {
   int sign;
+  double log_size = 0;
   gsl_matrix_view a = gsl_matrix_submatrix(k->bordered, 0, 0, size, size);
   gsl_permutation order = {.size = size, .data = k->order->data};
-  gsl_permutation_init(&order);
-  gsl_linalg_LU_decomp(&a.matrix, &order, &sign);
-  double log = gsl_linalg_LU_lndet(&a.matrix);
-  return gsl_linalg_LU_sgndet(&a.matrix, sign) * exp(fmax(-600, fmin(log, 600)));
+  gsl_vector_view tau = gsl_vector_view_array(k->tau, size), scratch = gsl_vector_view_array(k->tau + size, size);
+  gsl_linalg_QRPT_decomp(&a.matrix, &tau.vector, &order, &sign, &scratch.vector);
+  for (size_t i = 0; i < size; i++) {
+    double r = gsl_matrix_get(&a.matrix, i, i);
+    if (r == 0)
+      return 0;
+    sign *= (r > 0 ? 1 : -1) * (k->tau[i] != 0 ? -1 : 1);
+    log_size += log(fabs(r));
+  }
+  return sign * exp(fmax(-600, fmin(log_size, 600)));
 }
 
 static double determinant_of_block(const ric_shooting *s, size_t row, size_t column) {

@@ -27,6 +27,7 @@ typedef struct shooting_spectrum {
   even_spectrum even;
   gsl_matrix *bordered; /* [n + 1][n + 1], or [n + m][n + m] */
   gsl_permutation *order;
+  double *tau;            /* [2][n + 1] or [2][n + m] */
   tangent_jump jump;      /* for n + m columns */
   unsigned char *contact; /* [obstacles] all open, or pressed where they comply */
   bool grazing;           /* an impact is too slow for a derivative */

@@ -9,6 +9,7 @@
 #include <errno.h>
 #include <stdbool.h>
 
+#include "scenario/family_scenario.h"
 #include "solved.h"
 
 #if defined(__SANITIZE_ADDRESS__) || !defined(__GLIBC__)
@@ -347,6 +348,42 @@ static void following_a_curve_allocates_nothing(void **state) {
 
 /* The estimate leaves out the block of the flow, the descriptions of the plans, and buffers that FFTW takes for awkward
  * numbers of particles, up to two numbers per site. It serves to refuse what cannot fit. */
+/* A family followed once more: between special points everything has its place. */
+static size_t allocations_of_a_family(family_scenario *s, int failed, bool multipliers, size_t points) {
+  ric_family *family = NULL;
+  double *z = NULL;
+  ric_curve_run run;
+  size_t before = 0;
+  s->options.multipliers = multipliers;
+  s->options.curve.points = points;
+  assert_false(failed);
+  assert_int_equal(family_scenario_begin(s, &family, &z, NULL), RIC_OK);
+  for (int k = 0; k < 2; k++) {
+    before = allocations;
+    assert_int_equal(ric_family_follow(family, z, s->start, NULL, NULL, NULL, &run, NULL), RIC_OK);
+    assert_true(run.points > 3);
+  }
+  size_t during = allocations - before;
+  ric_family_destroy(&family);
+  family_scenario_clear(s);
+  free(z);
+  return during;
+}
+
+static void following_a_family_again_allocates_nothing(void **state) {
+  (void)state;
+  const double period = 4.71238898038469;
+  family_scenario s;
+  for (int multipliers = 0; multipliers < 2; multipliers++) {
+    int failed = family_scenario_two_masses(&s, 7, 6.8);
+    assert_int_equal(allocations_of_a_family(&s, failed, multipliers, 20), 0);
+    failed = family_scenario_impact(&s, 20, period, 0.01, 0.1);
+    assert_int_equal(allocations_of_a_family(&s, failed, multipliers, 20), 0);
+    failed = family_scenario_hertz(&s, 10, 1000, period, 0.05);
+    assert_int_equal(allocations_of_a_family(&s, failed, multipliers, 20), 0);
+  }
+}
+
 static void check_estimate(scenario s, ric_orbit_method method) {
   size_t before = most_live = live;
   solved x = solved_by(method, s);
@@ -381,6 +418,7 @@ int main(void) {
       cmocka_unit_test(moving_a_user_system_allocates_nothing),
       cmocka_unit_test(following_a_motion_again_allocates_nothing),
       cmocka_unit_test(moving_with_other_numbers_allocates_nothing),
+      cmocka_unit_test(following_a_family_again_allocates_nothing),
       cmocka_unit_test(following_a_curve_allocates_nothing),
       cmocka_unit_test(memory_is_what_was_estimated),
   };
