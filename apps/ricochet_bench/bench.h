@@ -23,9 +23,9 @@ typedef struct benchmark {
   work_done (*run)(size_t argument, int variant);
 } benchmark;
 
-/** Lists that end with a NULL name: orbits, trajectories, multipliers, curves of solutions, and families. */
+/** Lists that end with a NULL name: orbits, trajectories, multipliers, curves of solutions, families, and flows. */
 extern const benchmark benchmarks[], trajectory_benchmarks[], multiplier_benchmarks[], continuation_benchmarks[],
-    family_benchmarks[];
+    family_benchmarks[], flow_benchmarks[];
 
 /** Seconds on the monotonic clock. */
 double bench_seconds(void);

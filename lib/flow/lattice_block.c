@@ -15,10 +15,6 @@ size_t lattice_block_halo(int order, unsigned terms) {
   return lost(terms, order);
 }
 
-/* Below this divisor a rounded reciprocal would change the size of a mode by the same 1e-17 at every step, which adds
- * up; rounding of a quotient depends on the motion and does not. Later coefficients are too small to matter. */
-enum { LAST_DIVIDED = 56 };
-
 RIC_INLINE void linear_level(const double *restrict c, double *restrict next, const double *restrict own,
                              const double *restrict left, const double *restrict right, size_t low, size_t high,
                              double h2, int divisor) {
@@ -108,8 +104,8 @@ RIC_INLINE void general_level(lattice_block *b, int j, size_t low, size_t high, 
     next[i] = h2 * force[i] / divisor;
 }
 
-/* Adds the j-th coefficient of the pressed contacts' forces to c_{j+2}. */
-static void add_presses(lattice_block *b, int j, double scale) {
+void lattice_block_press(lattice_block *b, int j, double h) {
+  double scale = h * h / ((j + 1) * (j + 2));
   const double *c = b->c + (size_t)j * b->stride;
   double *next = b->c + (size_t)(j + 2) * b->stride;
   for (size_t k = 0; k < b->presses.count; k++) {
@@ -131,7 +127,7 @@ RIC_VECTORISED static void raise_levels(lattice_block *b, double h, const double
     } else
       general_level(b, j, low, high, h, cosine[j], sine[j]);
     if (b->presses.count > 0)
-      add_presses(b, j, h * h / divisor);
+      lattice_block_press(b, j, h);
     lattice_block_close_ring(b, j + 2);
   }
 }

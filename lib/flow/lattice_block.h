@@ -39,6 +39,10 @@ typedef enum block_row {
 /** What a block has beyond linear springs. */
 enum { BLOCK_DAMPED = 1, BLOCK_LINK_DAMPED = 2, BLOCK_SITE_NONLINEAR = 4, BLOCK_LINK_NONLINEAR = 8, BLOCK_FORCED = 16 };
 
+/** Below this divisor a rounded reciprocal would change the size of a mode by the same 1e-17 at every step, which adds
+ *  up; rounding of a quotient depends on the motion and does not. Later coefficients are too small to matter. */
+enum { LAST_DIVIDED = 56 };
+
 /** A pressed Hertz contact of a column. */
 typedef struct block_press {
   size_t column;
@@ -81,6 +85,9 @@ static inline void lattice_block_close_ring(lattice_block *block, int level) {
     c[block->count + 1] = c[1];
   }
 }
+
+/** Adds the j-th coefficient of the pressed contacts' forces to c_{j+2}, in a step of length h. */
+void lattice_block_press(lattice_block *block, int j, double h);
 
 /** Fills c_2 ... c_order from c_0 and c_1 (velocity times h); ghosts and the starts of the presses are given.
  *  @param cosine, sine  [order + 1] series of the forcing's cosine and sine */

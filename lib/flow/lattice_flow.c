@@ -100,8 +100,8 @@ static ric_status carry(ric_flow *flow, ric_error *error) {
   lattice_flow *f = self(flow);
   if (f->variation || flow->tangent.columns == 0)
     return RIC_OK;
-  return lattice_variation_create(f->lattice, f->stepper.order, system_compliant_obstacles(flow->system) > 0,
-                                  &f->variation, error);
+  return lattice_variation_create(f->lattice, f->stepper.order, system_compliant_obstacles(flow->system), &f->variation,
+                                  error);
 }
 
 static double coordinate_at(ric_flow *flow, size_t i, double x) {

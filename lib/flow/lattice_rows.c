@@ -145,4 +145,6 @@ void series_load_rows(lattice_series *s) {
     load_run(s, &run);
   for (series_run run = {0}; series_next_run(s, &run);)
     load_contacts(s, &run);
+  if (s->few)
+    lattice_few_load(s->few, b);
 }

@@ -77,14 +77,20 @@ static size_t padded(size_t columns) {
 ric_status lattice_series_create(const ric_lattice *lattice, int order, size_t block, lattice_series **series,
                                  ric_error *error) {
   lattice_series *s = *series = calloc(1, sizeof *s);
+  bool few = false;
   if (s) {
     s->block = (lattice_block){.order = order, .terms = terms_of(lattice)};
     s->halo = lattice_block_halo(order, s->block.terms);
     s->block.stride = padded(block + 2 * (s->halo > 0 ? s->halo : 1));
+    few = block == lattice->particles && lattice_few_takes(block, s->block.terms);
+    if (few) {
+      s->few = malloc(sizeof *s->few);
+      s->block.stride = padded(lattice_few_columns(block));
+    }
     s->store = calloc(lay_out(&s->block, NULL), sizeof *s->store);
     s->held_column = malloc(s->block.stride * sizeof *s->held_column);
   }
-  if (!s || !s->store || !s->held_column) {
+  if (!s || !s->store || !s->held_column || (few && !s->few)) {
     lattice_series_destroy(series);
     return ric_fail(error, RIC_ENOMEM, "no memory for the Taylor coefficients of %zu particles", block);
   }
@@ -102,6 +108,7 @@ void lattice_series_destroy(lattice_series **series) {
   block_presses *p = &(*series)->block.presses;
   free(p->press);
   free((*series)->held_column);
+  free((*series)->few);
   free((*series)->store);
   free(*series);
   *series = NULL;
@@ -215,7 +222,10 @@ ric_segment lattice_series_segment(lattice_series *s, const double *q, const dou
   load_state(s, q, v, length);
   if (b->terms & BLOCK_FORCED)
     forcing_series(s, start, length, s->cosine, s->sine);
-  lattice_block_raise(b, length, s->cosine, s->sine);
+  if (s->few)
+    lattice_few_raise(s->few, b, length, s->cosine, s->sine);
+  else
+    lattice_block_raise(b, length, s->cosine, s->sine);
   s->segment.start = start;
   s->segment.length = length;
   s->segment.coef = b->c + b->ghosts;

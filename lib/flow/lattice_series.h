@@ -36,7 +36,7 @@ typedef struct lattice_series lattice_series;
 
 /** @param lattice  says which terms there will be: later ones must fit
  *  @param order  4 to LATTICE_SERIES_ORDER
- *  @param block  most particles of a stretch */
+ *  @param block  most particles of a stretch; with all of them, every stretch is the whole lattice */
 ric_status lattice_series_create(const ric_lattice *lattice, int order, size_t block, lattice_series **series,
                                  ric_error *error);
 void lattice_series_destroy(lattice_series **series);

@@ -2,12 +2,13 @@
 #ifndef RICOCHET_LATTICE_SERIES_PARTS_H
 #define RICOCHET_LATTICE_SERIES_PARTS_H
 
-#include "lattice_block.h"
+#include "lattice_few.h"
 #include "lattice_series.h"
 
 struct lattice_series {
   lattice_block block;
-  double *store; /* all arrays of the block */
+  lattice_few *few; /* which makes the levels; NULL: the block does */
+  double *store;    /* all arrays of the block */
   size_t halo;
   const ric_lattice *lattice;
   lattice_contacts contacts;

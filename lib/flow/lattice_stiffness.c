@@ -1,86 +1,77 @@
 /* The stiffness of a lattice along a step, as series. */
-#include <string.h>
-
 #include "hertz_series.h"
 #include "lattice_variation_parts.h"
 
 bool lattice_variation_varies(const lattice_variation *v, const lattice_contacts *acting) {
-  return v->nonlinear || acting->pressed_count > 0;
+  return v->nonlinear > 0 || acting->pressed_count > 0;
 }
 
 void lattice_variation_begin(lattice_variation *v, double length) {
   v->length = length;
-  v->varies = false;
+  v->count = 0;
 }
 
 void lattice_variation_take(lattice_variation *v, const ric_segment *piece, double x) {
   double power = 1;
-  for (int j = 0; j <= v->order; j++, power *= x)
-    for (size_t i = 0; i < piece->coordinates; i++) {
-      double c = j <= piece->degree ? piece->coef[(size_t)j * piece->stride + i] : 0;
-      v->q[(size_t)j * v->n + piece->first + i] = power * c;
-    }
+  for (int j = 0; j <= v->order; j++, power *= x) {
+    const double *c = piece->coef + (size_t)j * piece->stride;
+    double *q = v->q + (size_t)j * v->n + piece->first;
+    for (size_t i = 0; i < piece->coordinates; i++)
+      q[i] = power * c[i];
+  }
 }
 
-/* Coefficients of an extension: of particle b over particle a, n standing for a wall. */
-static void extension(const lattice_variation *v, size_t a, size_t b, double *e) {
+/* Coefficients of an extension. */
+RIC_INLINE void extension(const lattice_variation *v, const varying_spring *s, double *e) {
   for (int j = 0; j <= v->order; j++) {
     const double *q = v->q + (size_t)j * v->n;
-    e[j] = (b < v->n ? q[b] : 0) - (a < v->n ? q[a] : 0);
+    e[j] = (s->to != NO_PARTICLE ? q[s->to] : 0) - (s->from != NO_PARTICLE ? q[s->from] : 0);
   }
 }
 
-/* Adds 2 a e + 3 b e^2 to a column of coefficients. */
-static void add_spring(const ric_spring *s, const double *e, int order, double *column, size_t stride) {
-  if (s->quadratic == 0 && s->cubic == 0)
-    return;
-  for (int j = 0; j <= order; j++) {
-    double square = 0;
-    for (int i = 0; i <= j; i++)
-      square += e[i] * e[j - i];
-    column[(size_t)j * stride] += 2 * s->quadratic * e[j] + 3 * s->cubic * square;
+enum { PADDED = (LATTICE_SERIES_ORDER / RIC_LANES + 1) * RIC_LANES };
+
+/* Coefficients of e^2 up to the order, some at a time; e has as many zeros before it. */
+RIC_INLINE void square(const double *e, int order, double *out) {
+  for (int j = 0; j <= order; j += RIC_LANES) {
+    ric_lanes even = {0}, odd = {0};
+    for (int i = 0; i < j + RIC_LANES; i += 2) {
+      even += e[i] * *(const ric_lanes *)(e + j - i);
+      odd += e[i + 1] * *(const ric_lanes *)(e + j - i - 1);
+    }
+    *(ric_lanes *)(out + j) = even + odd;
   }
 }
 
-static void stiffen_sites(lattice_variation *v) {
-  double e[LATTICE_SERIES_ORDER + 1];
-  for (size_t i = 0; i < v->n; i++) {
-    ric_spring own = ric_lattice_on_site(v->lattice, i);
-    extension(v, v->n, i, e);
-    add_spring(&own, e, v->order, v->site + i, v->n);
+/* 2 a e + 3 b e^2. */
+RIC_VECTORISED static void stiffen_springs(const lattice_variation *v) {
+  double zeros_and_e[2 * PADDED + 2] = {0}, *e = zeros_and_e + PADDED, squares[PADDED];
+  for (size_t k = 0; k < v->nonlinear; k++) {
+    const varying_spring *s = &v->varying[k];
+    double *stiffness = v->k + k * ((size_t)v->order + 1), twice = 2 * s->quadratic, thrice = 3 * s->cubic;
+    extension(v, s, e);
+    square(e, v->order, squares);
+    for (int j = 0; j <= v->order; j++)
+      stiffness[j] = twice * e[j] + thrice * squares[j];
   }
 }
 
-static void stiffen_links(lattice_variation *v) {
-  double e[LATTICE_SERIES_ORDER + 1];
-  size_t n = v->n;
-  for (size_t i = 0; i <= n; i++) {
-    ric_spring link = ric_lattice_link(v->lattice, i);
-    size_t a = i > 0 ? i - 1 : v->ring ? n - 1 : n, b = i < n ? i : v->ring ? 0 : n;
-    extension(v, a, b, e);
-    add_spring(&link, e, v->order, v->link + i, n + 1);
-  }
-}
-
-static void stiffen_press(lattice_variation *v, const lattice_press *p) {
-  double u[LATTICE_SERIES_ORDER + 1], r[LATTICE_SERIES_ORDER + 1];
+static void stiffen_press(const lattice_variation *v, const lattice_press *p, double *k) {
+  double u[LATTICE_SERIES_ORDER + 1];
   for (int j = 0; j <= v->order; j++)
     u[j] = -p->side * v->q[(size_t)j * v->n + p->coordinate];
   u[0] += p->side * p->position;
-  hertz_root_series(u, v->order, r);
+  hertz_root_series(u, v->order, k);
   for (int j = 0; j <= v->order; j++)
-    v->site[(size_t)j * v->n + p->coordinate] += 1.5 * p->stiffness * r[j];
+    k[j] *= 1.5 * p->stiffness;
 }
 
 void lattice_variation_stiffen(lattice_variation *v, const lattice_contacts *acting) {
   size_t levels = (size_t)v->order + 1;
-  v->varies = true;
-  memset(v->site, 0, levels * v->n * sizeof *v->site);
-  memset(v->link, 0, levels * (v->n + 1) * sizeof *v->link);
-  if (v->nonlinear) {
-    stiffen_sites(v);
-    stiffen_links(v);
+  v->count = v->nonlinear + acting->pressed_count;
+  stiffen_springs(v);
+  for (size_t i = 0; i < acting->pressed_count; i++) {
+    v->varying[v->nonlinear + i] = (varying_spring){.from = NO_PARTICLE, .to = acting->pressed[i].coordinate};
+    stiffen_press(v, &acting->pressed[i], v->k + (v->nonlinear + i) * levels);
   }
-  for (size_t k = 0; k < acting->pressed_count; k++)
-    stiffen_press(v, &acting->pressed[k]);
 }

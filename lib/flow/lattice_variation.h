@@ -6,8 +6,8 @@
  *   (j + 1) (j + 2) c_{j+2} = h^2 / m [-(K c_j) - (j + 1) / h (C c_{j+1}) - sum_l k_l c_{j-l}],
  *
  * where K and C are the constant part and k_l the coefficients of what stiffness varies along the step: 2 a q + 3 b q^2
- * for quadratic and cubic springs, 3/2 k u^{1/2} for Hertz contacts, whose coefficients obey u r' = u' r / 2. Without
- * such terms a coefficient is forgotten when it has been added up; with them all are kept. */
+ * for quadratic and cubic springs, 3/2 k u^{1/2} for Hertz contacts, whose coefficients obey u r' = u' r / 2. Of the
+ * springs whose stiffness varies the extensions are kept; else a coefficient is forgotten when it has been added up. */
 #ifndef RICOCHET_LATTICE_VARIATION_H
 #define RICOCHET_LATTICE_VARIATION_H
 
@@ -16,8 +16,8 @@
 
 typedef struct lattice_variation lattice_variation;
 
-/** @param compliant  whether Hertz contacts may press */
-ric_status lattice_variation_create(const ric_lattice *lattice, int order, bool compliant,
+/** @param compliant  most Hertz contacts that press at a time */
+ric_status lattice_variation_create(const ric_lattice *lattice, int order, size_t compliant,
                                     lattice_variation **variation, ric_error *error);
 void lattice_variation_destroy(lattice_variation **variation);
 

@@ -14,4 +14,15 @@
 #define RIC_INLINE static inline
 #endif
 
+/* Numbers side by side for sums that are not loops over particles: compilers do not find those. Operators act on every
+ * lane, so results do not depend on whether there is such a type. Passed by pointer: the way values go depends on the
+ * processor. */
+#if defined(__GNUC__)
+typedef double ric_lanes __attribute__((vector_size(32), aligned(8), may_alias));
+enum { RIC_LANES = 4 };
+#else
+typedef double ric_lanes;
+enum { RIC_LANES = 1 };
+#endif
+
 #endif

@@ -99,7 +99,7 @@ static void check(size_t n, ric_ends ends, unsigned with, int order) {
 }
 
 static void for_all_sizes_and_ends(unsigned with, int order) {
-  const size_t sizes[] = {1, 2, 3, 30, 255, 256, 257, 512, 600, 1000};
+  const size_t sizes[] = {1, 2, 3, 4, 5, 8, 9, 30, 255, 256, 257, 512, 600, 1000};
   for (int ends = RIC_ENDS_PERIODIC; ends <= RIC_ENDS_FREE; ends++)
     for (size_t k = 0; k < sizeof sizes / sizeof *sizes; k++)
       check(sizes[k], (ric_ends)ends, with, order);
