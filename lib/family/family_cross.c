@@ -94,16 +94,16 @@ static bool take_out(size_t *list, size_t *count, size_t obstacle) {
   return false;
 }
 
-static void remove_contact(crossing *c) {
+static ric_status remove_contact(crossing *c) {
   ric_shooting_problem *m = &c->problem.motion;
   double time = c->point->time, nearest = INFINITY;
   size_t which = 0;
   bool at_start = is_even(c) && time < at_turning * c->period;
   bool at_half = is_even(c) && fabs(time - c->period / 2) < at_turning * c->period;
   if (at_start && take_out(c->start, &m->start_count, c->point->obstacle))
-    return;
+    return RIC_OK;
   if (at_half && take_out(c->half, &m->half_count, c->point->obstacle))
-    return;
+    return RIC_OK;
   for (size_t k = 0; k < m->count; k++) {
     double apart = fabs(remainder(c->times[k] - time, c->period));
     if (c->sequence[k] == c->point->obstacle && apart < nearest) {
@@ -111,9 +111,13 @@ static void remove_contact(crossing *c) {
       which = k;
     }
   }
+  if (!(nearest < INFINITY))
+    return ric_fail(c->error, RIC_EINVAL, "point = impact_lost of obstacle %zu, which the family does not hit",
+                    c->point->obstacle);
   memmove(c->sequence + which, c->sequence + which + 1, (m->count - which - 1) * sizeof *c->sequence);
   memmove(c->times + which, c->times + which + 1, (m->count - which - 1) * sizeof *c->times);
   m->count--;
+  return RIC_OK;
 }
 
 /* --- the motion at the crossing ----------------------------------------------------------------------------------- */
@@ -162,9 +166,14 @@ static ric_status soundness(ric_family *f, const double *z, double parameter, do
   return RIC_OK;
 }
 
-/* Which way along a tangent [n + 1] a family becomes sound: its sign, 0 where it does not tell. */
-static ric_status find_side(ric_family *f, const double *z, const double *t, double parameter, double second, int *sign,
-                            ric_error *error) {
+/* Which way along a tangent [n + 1] a family becomes sound, or less unsound. */
+typedef struct way {
+  int sign;    /* 0 where it does not tell */
+  bool exists; /* it is sound there */
+} way;
+
+static ric_status find_side(ric_family *f, const double *z, const double *t, double parameter, double second,
+                            way *found, ric_error *error) {
   double value[2] = {0, 0};
   size_t n = f->unknowns;
   ric_status status = RIC_OK;
@@ -177,7 +186,7 @@ static ric_status find_side(ric_family *f, const double *z, const double *t, dou
       beside[i] = z[i] + step * t[i];
     status = soundness(f, beside, parameter + step * t[n], second, &value[k], error);
   }
-  *sign = value[1] > value[0] ? 1 : value[1] < value[0] ? -1 : 0;
+  *found = (way){value[1] > value[0] ? 1 : value[1] < value[0] ? -1 : 0, fmax(value[0], value[1]) > 0};
   free(beside);
   return status;
 }
@@ -192,15 +201,15 @@ static ric_status find_sides(crossing *c) {
   const ric_family_point *point = c->point;
   size_t n = f->unknowns;
   double p = point->parameter, second = c->problem.second;
-  int sign;
+  way found;
   RIC_TRY(family_null_vectors(f, j->z, 1, j->tangent, c->error));
-  RIC_TRY(find_side(f, j->z, j->tangent, p, second, &sign, c->error));
-  for (size_t i = 0; i <= n && sign < 0; i++)
+  RIC_TRY(find_side(f, j->z, j->tangent, p, second, &found, c->error));
+  for (size_t i = 0; i <= n && found.sign < 0; i++)
     j->tangent[i] = -j->tangent[i];
-  j->side = fabs(j->tangent[n]) > 1e-12 ? sign_of(j->tangent[n]) : 0;
+  j->side = found.exists && fabs(j->tangent[n]) > 1e-12 ? sign_of(j->tangent[n]) : 0;
   family_forget(c->from); /* the other one has changed the system */
-  RIC_TRY(find_side(c->from, point->z, point->tangent, p, second, &sign, c->error));
-  j->other_side = sign * sign_of(point->tangent[c->from->unknowns]);
+  RIC_TRY(find_side(c->from, point->z, point->tangent, p, second, &found, c->error));
+  j->other_side = (found.exists ? found.sign : 0) * sign_of(point->tangent[c->from->unknowns]);
   family_forget(f);
   return RIC_OK;
 }
@@ -223,9 +232,10 @@ ric_status ric_family_cross(ric_family *family, const ric_family_point *point, r
     if (point->kind == RIC_FAMILY_GRAZING)
       add_contact(&c);
     else
-      remove_contact(&c);
-    status = find_start(&c);
+      status = remove_contact(&c);
   }
+  if (status == RIC_OK)
+    status = find_start(&c);
   if (status == RIC_OK)
     status = family_branch(&c.problem, family, point, c.x, c.times, c.period, junction, error);
   if (status == RIC_OK)

@@ -207,14 +207,17 @@ static bool is_impact_lost(const ric_family *f, size_t obstacle) {
   return false;
 }
 
+static double folded(double time, double period) {
+  double t = fmod(time, period);
+  return t < 0 ? t + period : t;
+}
+
 static void name_touch(const ric_family *f, const gap_found *gap, ric_family_point *point) {
   if (is_impact_lost(f, gap->obstacle))
     return;
   point->kind = RIC_FAMILY_GRAZING;
   point->obstacle = gap->obstacle;
-  point->time = fmod(gap->time, f->orbit.period);
-  if (point->time < 0)
-    point->time += f->orbit.period;
+  point->time = folded(gap->time, f->orbit.period);
 }
 
 static void name_impact(const ric_family *f, const double *z, size_t which, ric_family_point *point) {
@@ -223,12 +226,20 @@ static void name_impact(const ric_family *f, const double *z, size_t which, ric_
   point->time = f->orbit.impact_time[which];
 }
 
+static double slope_of(event_time e, const ric_family_point *point) {
+  return e.index == NO_UNKNOWN ? 0 : point->tangent[e.index];
+}
+
+/* Impacts that have one time all along the family, by a symmetry, come to none. */
 static void name_order(const ric_family *f, const double *z, size_t arc, ric_family_point *point) {
   const arc_plan *plan = &f->shooting->arcs;
   const arc_piece *p = &plan->pieces[arc * (plan->count / plan->arc_count)];
   size_t next = plan->kind == RIC_MOTION_EVEN ? arc : (arc + 1) % plan->sequence_count;
+
+  if (p->end.of_period == 0 && fabs(slope_of(p->end, point) - slope_of(p->begin, point)) < rounding)
+    return;
   point->kind = RIC_FAMILY_ORDER;
-  point->time = arcs_time(p->begin, z, arcs_period(plan, z, f->given));
+  point->time = folded(arcs_time(p->begin, z, f->orbit.period), f->orbit.period);
   point->obstacle = plan->sequence[next < plan->sequence_count ? next : plan->sequence_count - 1];
 }
 

@@ -44,6 +44,13 @@ static void show(ric_flow *flow, const arc_watch *watcher) {
   }
 }
 
+static ric_status check_steps(const arc_runner *r, ric_error *error) {
+  const ric_flow *flow = arc_runner_flow(r);
+  if (r->last_step == 0 || ric_flow_counted(flow).steps < r->last_step)
+    return RIC_OK;
+  return ric_fail(error, RIC_ENUMERIC, "the motion takes too many steps; given up at t = %g", ric_flow_time(flow));
+}
+
 static ric_status flow_along(arc_runner *r, double from, double to, double *x, size_t columns, double *d,
                              const arc_watch *watcher, ric_error *error) {
   size_t n = r->system->coordinates;
@@ -53,6 +60,7 @@ static ric_status flow_along(arc_runner *r, double from, double to, double *x, s
   while (ric_flow_time(r->flow) != to) {
     if (ric_poll_stops(r->poll))
       return ric_fail(error, RIC_ESTOPPED, "stopped at t = %g", ric_flow_time(r->flow));
+    RIC_TRY(check_steps(r, error));
     RIC_TRY(ric_flow_step(r->flow, to, error));
     show(r->flow, watcher);
     ric_flow_accept(r->flow, 1);

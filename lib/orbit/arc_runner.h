@@ -14,6 +14,7 @@ typedef struct arc_runner {
   ric_flow *flow;             /* NULL where compliant obstacles need a trajectory */
   ric_trajectory *trajectory; /* NULL otherwise */
   ric_poll poll;
+  unsigned long long last_step; /* of the flow, as it counts them: longer motions are given up; 0: none are */
 } arc_runner;
 
 ric_status arc_runner_init(arc_runner *runner, const ric_system *system, const ric_flow_options *flow, ric_poll poll,
@@ -30,8 +31,8 @@ typedef struct arc_watch {
  *  @param x  [n + m] state, moved
  *  @param columns, d  [n + m][columns] row-major tangent vectors, moved; 0, NULL for none
  *  @param watcher  sees the pieces; NULL
- *  @returns RIC_ENUMERIC when the motion blows up, or would run backwards where it cannot; RIC_ECALLBACK,
- *           RIC_ESTOPPED, RIC_ENOMEM. */
+ *  @returns RIC_ENUMERIC when the motion blows up, takes too many steps, or would run backwards where it cannot;
+ * RIC_ECALLBACK, RIC_ESTOPPED, RIC_ENOMEM. */
 ric_status arc_runner_move(arc_runner *runner, double from, double to, double *x, size_t columns, double *d,
                            const arc_watch *watcher, ric_error *error);
 

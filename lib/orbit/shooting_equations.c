@@ -5,6 +5,10 @@
 
 #include "shooting_parts.h"
 
+/* Arcs that are longer, in periods, belong to no motion near: Newton's method has lost its way, and running along them
+ * would take for ever. */
+static const double longest_arc = 10;
+
 typedef struct equations {
   ric_shooting *s;
   const double *z;
@@ -155,6 +159,10 @@ static ric_status run_piece(const equations *e, size_t k, ric_error *error) {
   const shooting_observer *o = e->observer;
   const arc_watch watch = {.segment = show_segment, .user = (void *)(uintptr_t)o};
   piece_run run = shooting_begin(e->s, k, e->z, e->period, wants_derivatives(e));
+  double periods = (run.end - run.begin) / e->period;
+  if (!(fabs(periods) <= longest_arc))
+    return ric_fail(error, RIC_ENUMERIC, "an arc from t = %g to %g, expected at most %g periods of %g", run.begin,
+                    run.end, longest_arc, e->period);
   if (o)
     o->begins(&run, o->user);
   RIC_TRY(shooting_move(e->s, &run, o ? &watch : NULL, error));

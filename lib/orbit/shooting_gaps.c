@@ -174,3 +174,33 @@ void shooting_gaps_look(shooting_gaps *g, const ric_segment *piece, double end) 
   for (size_t j = 0; !g->s->system->obstacles && j < g->s->system->obstacle_count; j++)
     look_at_part(g, piece, j, 0, end, INFINITY, HALVINGS);
 }
+
+/* --- where segments do not tell ----------------------------------------------------------------------------------- */
+
+static void add_own(shooting_gaps *g, double value, double time, size_t obstacle) {
+  keep_smaller(&g->own, value, time, obstacle);
+  if (value < -g->zero && !(time >= g->first.time))
+    g->first = (gap_found){-g->zero, time, obstacle};
+}
+
+ric_status shooting_gaps_turn(shooting_gaps *g, const size_t *hit, double time, ric_error *error) {
+  ric_shooting *s = g->s;
+  const ric_system *system = s->system;
+  size_t n = s->arcs.coordinates;
+  RIC_TRY(ric_system_rate(system, time, s->x, s->x + n, s->rates, s->rates + n, error));
+  for (size_t j = 0; j < system->obstacle_count; j++) {
+    const ric_obstacle *o = &system->obstacles[j];
+    if (g->hit[j] && hit[o->coordinate] == NO_UNKNOWN && o->side * s->rates[n + o->coordinate] >= 0)
+      add_own(g, ric_obstacle_gap(o, s->x[o->coordinate]), time, j);
+  }
+  return RIC_OK;
+}
+
+void shooting_gaps_close(shooting_gaps *g, const piece_run *run, const double *before, const double *after) {
+  const ric_system *system = g->s->system;
+  size_t n = g->s->arcs.coordinates;
+  for (size_t j = 0; j < system->obstacle_count; j++)
+    if (g->hit[j] && j != run->piece->obstacle && ric_system_gap_rate(system, j, run->end, before, before + n) < 0 &&
+        ric_system_gap_rate(system, j, run->end, after, after + n) > 0)
+      add_own(g, ric_system_gap(system, j, run->end, before), run->end, j);
+}

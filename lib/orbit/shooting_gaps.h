@@ -39,4 +39,12 @@ void shooting_gaps_reset(shooting_gaps *g);
 void shooting_gaps_begin(shooting_gaps *g, const piece_run *run);
 void shooting_gaps_look(shooting_gaps *g, const ric_segment *piece, double end);
 
+/** At an end of the half period of an even motion, with the state s->x there: gaps of obstacles that it hits elsewhere
+ *  are at an extremum. @param hit  which obstacle each coordinate hits there */
+ric_status shooting_gaps_turn(shooting_gaps *g, const size_t *hit, double time, ric_error *error);
+
+/** Where a motion closes with an impact: other gaps may turn around there.
+ *  @param before, after  states [n + m] */
+void shooting_gaps_close(shooting_gaps *g, const piece_run *run, const double *before, const double *after);
+
 #endif

@@ -18,6 +18,8 @@ typedef struct look {
   ric_orbit *orbit;
   size_t impacts; /* filled so far */
   bool out_of_order;
+  ric_status status; /* of what the observer asks for */
+  ric_error *error;
 } look;
 
 /* How much an impulse along the gap of an obstacle changes its rate; NaN for impact maps. */
@@ -58,7 +60,7 @@ static void begins(const piece_run *run, void *user) {
   look *l = user;
   const ric_shooting *s = l->s;
   shooting_gaps_begin(s->gaps, run);
-  if (run->end < run->begin)
+  if (run->end < run->begin - s->grazing_tol * l->period) /* impacts of one time are in order either way */
     l->out_of_order = true;
   if (run->piece > s->arcs.pieces)
     return;
@@ -69,6 +71,8 @@ static void begins(const piece_run *run, void *user) {
   for (size_t i = 0; is_even(l) && i < s->arcs.coordinates; i++)
     if (s->arcs.at_start[i] != NO_UNKNOWN)
       add_impact(l, s->arcs.at_start[i], 0, s->x, -1);
+  if (is_even(l))
+    l->status = shooting_gaps_turn(s->gaps, s->arcs.at_start, 0, l->error);
 }
 
 /* State at half the period, of motions that are not even: where a segment passes it. */
@@ -93,6 +97,8 @@ static void ends(const piece_run *run, const double *x, void *user) {
   size_t n = s->arcs.coordinates;
   if (run->piece->how == PIECE_IMPACT)
     add_impact(l, run->piece->obstacle, run->end, x, 1);
+  if (run->piece->how == PIECE_IMPACT && run->piece->closes)
+    shooting_gaps_close(s->gaps, run, x, l->z);
   if (run->piece->how != PIECE_HALF)
     return;
   memcpy(l->orbit->q_half, x, n * sizeof *x);
@@ -100,6 +106,8 @@ static void ends(const piece_run *run, const double *x, void *user) {
   for (size_t i = 0; i < n; i++)
     if (s->arcs.at_half[i] != NO_UNKNOWN)
       add_impact(l, s->arcs.at_half[i], run->end, x, 1);
+  if (l->status == RIC_OK)
+    l->status = shooting_gaps_turn(s->gaps, s->arcs.at_half, run->end, l->error);
 }
 
 /* The second half of an even motion mirrors the impacts between. */
@@ -183,6 +191,7 @@ static ric_status follow(look *l, double given, ric_error *error) {
   const shooting_observer observer = {.begins = begins, .segment = segment, .ends = ends, .user = l};
   shooting_gaps_reset(s->gaps);
   RIC_TRY(shooting_evaluate(s, l->z, given, s->residual, NULL, NULL, &observer, error));
+  RIC_TRY(l->status);
   if (s->gaps->trouble)
     return ric_fail(error, RIC_ECALLBACK, "a gap of the motion could not be read: %s", s->gaps->trouble);
   add_mirrored(l);
@@ -198,7 +207,7 @@ static ric_status check_room(const ric_shooting *s, const ric_orbit *orbit, ric_
 }
 
 ric_status ric_shooting_orbit(ric_shooting *s, const double *z, double given, ric_orbit *orbit, ric_error *error) {
-  look l = {.s = s, .z = z, .orbit = orbit};
+  look l = {.s = s, .z = z, .orbit = orbit, .error = error};
   RIC_TRY(check_room(s, orbit, error));
   RIC_TRY(reserve(s, error));
   RIC_TRY(shooting_period(s, z, given, &l.period, error));

@@ -17,10 +17,15 @@ static const double default_tolerance = 1e-13;
 /* Residuals within this of the tolerance that no longer fall are rounding of unstable motions. */
 static const double rounding = 1e4;
 
+/* Motions that take so many times the steps of the guess, and some, lead nowhere: Newton's method tries states of any
+ * size, and fast ones would take for ever. */
+enum { STEPS_GROW = 50, STEPS_MORE = 1000 };
+
 typedef struct search {
   ric_shooting *s;
   double given;
-  ric_status status; /* of the last residual that failed for good */
+  unsigned long long most_steps; /* of a motion; 0 before the first */
+  ric_status status;             /* of the last residual that failed for good */
   ric_error *error;
   double *J;
   SUNContext context;
@@ -38,8 +43,15 @@ static int code_of(search *k, ric_status status) {
 
 static int residual(N_Vector z, N_Vector F, void *user) {
   search *k = user;
-  return code_of(
-      k, ric_shooting_residual(k->s, N_VGetArrayPointer(z), k->given, N_VGetArrayPointer(F), NULL, NULL, k->error));
+  arc_runner *runner = &k->s->runner;
+  unsigned long long before = ric_flow_counted(arc_runner_flow(runner)).steps;
+  runner->last_step = k->most_steps ? before + k->most_steps : 0;
+  ric_status status =
+      ric_shooting_residual(k->s, N_VGetArrayPointer(z), k->given, N_VGetArrayPointer(F), NULL, NULL, k->error);
+  runner->last_step = 0;
+  if (k->most_steps == 0)
+    k->most_steps = STEPS_GROW * (ric_flow_counted(arc_runner_flow(runner)).steps - before) + STEPS_MORE;
+  return code_of(k, status);
 }
 
 static int jacobian(N_Vector z, N_Vector F, SUNMatrix J, void *user, N_Vector spare, N_Vector other) {
