@@ -107,17 +107,17 @@ static void look_at_free(const gap_view *v) {
     look_for_violation(v);
 }
 
-/* Local minima inside the part, and one that lies between the last part and this. */
+/* Local minima inside the part, and one that lies between the last part and this; slopes are those forwards in time. */
 static void look_at_own(const gap_view *v) {
-  double y, value, slope, slope_end, *last = &v->g->slope[v->obstacle];
+  double y, value, slope, slope_end, *last = &v->g->slope[v->obstacle], sense = copysign(1, v->piece->length);
   gap_found *best = &v->g->own;
   ric_poly_value(v->part->c, v->part->degree, 0, &slope);
   ric_poly_value(v->part->c, v->part->degree, 1, &slope_end);
-  if (*last < 0 && slope > 0)
+  if (*last < 0 && sense * slope > 0)
     keep_smaller(best, v->part->c[0], time_at(v, 0), v->obstacle);
   while (ric_poly_first_minimum(v->part->c, v->part->degree, best->value - minimum_tol, &y, &value))
     keep_smaller(best, value, time_at(v, y), v->obstacle);
-  *last = slope_end;
+  *last = sense * slope_end;
   if (best->value < -v->g->zero)
     look_for_violation(v);
 }

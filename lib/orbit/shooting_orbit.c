@@ -9,6 +9,8 @@
 
 /* Residuals above it, relative to 1 + the largest unknown, are no solution's. */
 static const double residual_tol = 1e-6;
+/* Impacts this near to half the period, over it, are there: solutions have their times to 1e-13. */
+static const double half_tol = 1e-12;
 
 /* A solution being looked at. */
 typedef struct look {
@@ -75,12 +77,14 @@ static void begins(const piece_run *run, void *user) {
     l->status = shooting_gaps_turn(s->gaps, s->arcs.at_start, 0, l->error);
 }
 
-/* State at half the period, of motions that are not even: where a segment passes it. */
+/* State at half the period, of motions that are not even: where a segment passes it. One that ends there has the state
+ * before an impact, and the next one has not; rounding must not leave it to neither. */
 static void keep_half(look *l, const ric_segment *piece, double end) {
-  double x = (l->origin + l->period / 2 - piece->start) / piece->length;
-  if (!(x >= 0 && x <= end))
+  double x = (l->origin + l->period / 2 - piece->start) / piece->length, slack = half_tol * l->period;
+  slack /= fabs(piece->length);
+  if (!(x > slack && x <= end + slack))
     return;
-  ric_segment_state(piece, x, l->orbit->q_half + piece->first,
+  ric_segment_state(piece, fmin(x, end), l->orbit->q_half + piece->first,
                     l->orbit->speeds > 0 ? l->orbit->v_half + piece->first : NULL);
 }
 

@@ -103,8 +103,10 @@ RIC_API ric_status ric_shooting_solve(ric_shooting *shooting, double *z, double 
  *  over the segments of its arcs, certified there.
  *
  *  `admissible`: all impulses positive, impacts in order, all gaps positive in between; `inadmissible` with what is
- * violated first; `grazing` where an impulse or a gap is zero within grazing_tol. The clearance is the smallest gap of
- * any rigid obstacle away from its own impacts: of one that is hit, its smallest minimum between its impacts.
+ * violated first; `grazing` where an impulse or a gap is zero within grazing_tol. Gaps of obstacles that are hit count
+ * at their minima between the impacts. The clearance is the smallest gap of the rigid obstacles that are not hit at
+ * all; NaN if there are none. The state (q, v) is the first one: at t = 0+, of forced motions with impacts just after
+ * the one that is listed last; (q_half, v_half) is half a period later, before an impact there.
  *  @param orbit  initialised for the system's coordinates and ric_shooting_impacts
  *  @returns as ric_shooting_residual. */
 RIC_API ric_status ric_shooting_orbit(ric_shooting *shooting, const double *z, double given, ric_orbit *orbit,

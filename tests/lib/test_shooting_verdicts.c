@@ -1,0 +1,111 @@
+/* What is said of motions that shooting has found: gaps at the ends of the half period and where the motion closes,
+ * states at T/2, and starts from which Newton's method runs away. */
+#include "support.h"
+
+#include "recorded.h"
+#include "shot.h"
+
+static const double turn = 6.283185307179586;
+
+/* A cos t with a wall that it meets 0.3 before it turns there at the other end of the half period: beyond the wall. */
+static void even_motions_that_turn_beyond_what_they_hit_elsewhere_are_inadmissible(void **state) {
+  (void)state;
+  static const size_t wall = 0;
+  const ric_obstacle obstacle = ric_obstacle_wall(0, 1);
+  const ric_lattice lattice = ric_lattice_default(1, RIC_ENDS_FREE);
+  const double period = 2 * (turn - 0.3), q = 1, u = 0.5;
+  for (size_t half = 0; half < 2; half++) {
+    const ric_shooting_problem problem = {.kind = RIC_MOTION_EVEN,
+                                          .at_start = &wall,
+                                          .start_count = 1 - half,
+                                          .at_half = &wall,
+                                          .half_count = half,
+                                          .flow = ric_flow_options_default()};
+    shot s = shot_at(lattice_system(&lattice, &obstacle, 1), &problem);
+    shot_guess(&s, &q, &u, NULL, period);
+    shot_solve(&s);
+    assert_close(half ? s.orbit.q[0] : s.orbit.q_half[0], 1 / cos(0.3), 1e-11);
+    assert_int_equal(s.orbit.outcome, RIC_INADMISSIBLE);
+    assert_non_null(strstr(s.orbit.reason, "the smallest gap is -0.0468"));
+    shot_clear(&s);
+  }
+}
+
+/* Two masses that share inertia: an impact of one turns the gap of the other around. */
+static shot shared_inertia(bool turned) {
+  static const double mass[4] = {1, 0.5, 0.5, 1}, stiffness[4] = {2, 0, 0, 1};
+  static const size_t hits[3] = {0, 1, 0};
+  const ric_mck model = {.coordinates = 2, .mass = {.values = mass}, .stiffness = {.values = stiffness}};
+  const ric_obstacle obstacles[2] = {ric_obstacle_wall(0, 0.2), ric_obstacle_floor(1, 0.1)};
+  const ric_shooting_problem problem = {
+      .kind = RIC_MOTION_CONSERVATIVE, .sequence = hits + turned, .count = 2, .flow = ric_flow_options_default()};
+  const double q[2] = {0.2, turned ? 0.1 : -0.04}, u[2] = {turned ? -0.08 : -0.154, turned ? 0.02 : 0.077};
+  const double times[2] = {0, 1.7};
+  ric_system *system = NULL;
+  ric_error error;
+  if (ric_system_create_mck(&model, obstacles, 2, &system, &error) != RIC_OK)
+    fail_msg("%s", error.message);
+  shot s = shot_at(system, &problem);
+  shot_guess(&s, q, u, times, 3.4);
+  return s;
+}
+
+static void verdicts_do_not_depend_on_where_the_motion_is_begun(void **state) {
+  (void)state;
+  shot a = shared_inertia(false), b = shared_inertia(true);
+  shot_solve(&a);
+  memcpy(b.z, a.z + 4, 4 * sizeof *b.z);
+  memcpy(b.z + 4, a.z, 4 * sizeof *b.z);
+  b.z[8] = 3.4 - a.z[8];
+  shot_solve(&b);
+  assert_close(a.orbit.energy, b.orbit.energy, 1e-12);
+  assert_int_equal(a.orbit.outcome, RIC_INADMISSIBLE);
+  assert_int_equal(b.orbit.outcome, RIC_INADMISSIBLE);
+  assert_non_null(strstr(a.orbit.reason, "the smallest gap is -0.139"));
+  assert_non_null(strstr(b.orbit.reason, "the smallest gap is -0.139"));
+  shot_clear(&a);
+  shot_clear(&b);
+}
+
+/* Of two impacts half a period apart the second one is not passed yet. */
+static void states_at_half_the_period_are_those_before_an_impact_there(void **state) {
+  (void)state;
+  shot a = shared_inertia(false);
+  shot_solve(&a);
+  assert_close(a.orbit.impact_time[0], 1.7, 1e-11); /* the second of the sequence is listed first */
+  assert_close(a.orbit.q_half[1], 0.1, 1e-11);
+  assert_close(a.orbit.v_half[1], a.orbit.gap_rate[0], 1e-11);
+  shot_clear(&a);
+}
+
+/* Impacts of two particles at one time, by a symmetry, are in order whichever comes first in rounding. */
+static void impacts_of_one_time_are_in_order(void **state) {
+  (void)state;
+  static const size_t hits[2] = {0, 1};
+  const ric_obstacle obstacles[2] = {ric_obstacle_floor(0, -0.5), ric_obstacle_floor(1, -0.5)};
+  ric_lattice lattice = ric_lattice_default(2, RIC_ENDS_FREE);
+  lattice.link.linear = 0.2;
+  const ric_shooting_problem problem = {
+      .kind = RIC_MOTION_CONSERVATIVE, .sequence = hits, .count = 2, .flow = ric_flow_options_default()};
+  const double q[2] = {-0.5, -0.5}, u[2] = {0.9, 0.9}, times[2] = {0, 0};
+  shot s = shot_at(lattice_system(&lattice, obstacles, 2), &problem);
+  shot_guess(&s, q, u, times, 5);
+  shot_solve(&s);
+  for (int sign = -1; sign <= 1; sign += 2) {
+    s.z[8] = sign * 1e-14;
+    assert_int_equal(ric_shooting_orbit(s.shooting, s.z, s.given, &s.orbit, NULL), RIC_OK);
+    if (s.orbit.outcome != RIC_ADMISSIBLE)
+      fail_msg("%s: %s", ric_outcome_name(s.orbit.outcome), s.orbit.reason);
+  }
+  shot_clear(&s);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(even_motions_that_turn_beyond_what_they_hit_elsewhere_are_inadmissible),
+      cmocka_unit_test(verdicts_do_not_depend_on_where_the_motion_is_begun),
+      cmocka_unit_test(states_at_half_the_period_are_those_before_an_impact_there),
+      cmocka_unit_test(impacts_of_one_time_are_in_order),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
