@@ -3,6 +3,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include <gsl/gsl_errno.h>
+
 static const size_t most_numbers = (size_t)1 << 20; /* unknowns and test functions: the squares do not overflow */
 
 const char *ric_curve_point_name(ric_curve_point_kind kind) {
@@ -94,7 +96,9 @@ static ric_status allocate(ric_curve *c, ric_error *error) {
   c->block = calloc(numbers, sizeof *c->block);
   c->linear.permutation = calloc(size, sizeof *c->linear.permutation);
   c->found = calloc(tests + 2, sizeof *c->found);
+  gsl_error_handler_t *handler = gsl_set_error_handler_off(); /* which would abort when there is no memory */
   c->brent = gsl_root_fsolver_alloc(gsl_root_fsolver_brent);
+  gsl_set_error_handler(handler);
   if (!c->block || !c->linear.permutation || !c->found || !c->brent)
     return ric_fail(error, RIC_ENOMEM, "no memory for a curve of %zu unknowns and %zu tests", n, tests);
   c->row = bordered_place(&c->linear, n, c->block);

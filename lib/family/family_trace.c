@@ -204,6 +204,7 @@ ric_status ric_family_trace(ric_family *f, const ric_family_point *point, const 
   if (f->problem.parameters != 2)
     return ric_fail(error, RIC_EINVAL, "a family with one parameter, expected two");
   family_forget(f);
+  gsl_error_handler_t *handler = gsl_set_error_handler_off();
   t.J = malloc((n * n + 6 * n + 4) * sizeof *t.J);
   t.order = gsl_permutation_alloc(n);
   ric_status status = RIC_ENOMEM;
@@ -212,12 +213,11 @@ ric_status ric_family_trace(ric_family *f, const ric_family_point *point, const 
     t.F_p = t.F + n;
     t.z = t.F_p + n;
     t.slopes = t.z + n;
-    gsl_error_handler_t *handler = gsl_set_error_handler_off();
     status = walk(&t, point, options ? options : &f->options.curve, run, t.slopes + n + 2);
-    gsl_set_error_handler(handler);
   } else
     (void)ric_fail(error, RIC_ENOMEM, "no memory for a curve of %zu unknowns", n + 1);
   family_show_again(f, point);
+  gsl_set_error_handler(handler);
   gsl_permutation_free(t.order);
   free(t.J);
   return status;

@@ -183,6 +183,16 @@ static void add_own(shooting_gaps *g, double value, double time, size_t obstacle
     g->first = (gap_found){-g->zero, time, obstacle};
 }
 
+/* Whether a gap is smallest where its coordinate turns: at rest, or thrown back by another obstacle of the same side.
+ */
+static bool turns_around(const shooting_gaps *g, size_t obstacle, size_t hit) {
+  const ric_system *system = g->s->system;
+  const ric_obstacle *o = &system->obstacles[obstacle];
+  if (hit != NO_UNKNOWN)
+    return hit != obstacle && system->obstacles[hit].side == o->side;
+  return o->side * g->s->rates[system->coordinates + o->coordinate] >= 0;
+}
+
 ric_status shooting_gaps_turn(shooting_gaps *g, const size_t *hit, double time, ric_error *error) {
   ric_shooting *s = g->s;
   const ric_system *system = s->system;
@@ -190,7 +200,7 @@ ric_status shooting_gaps_turn(shooting_gaps *g, const size_t *hit, double time, 
   RIC_TRY(ric_system_rate(system, time, s->x, s->x + n, s->rates, s->rates + n, error));
   for (size_t j = 0; j < system->obstacle_count; j++) {
     const ric_obstacle *o = &system->obstacles[j];
-    if (g->hit[j] && hit[o->coordinate] == NO_UNKNOWN && o->side * s->rates[n + o->coordinate] >= 0)
+    if (g->hit[j] && turns_around(g, j, hit[o->coordinate]))
       add_own(g, ric_obstacle_gap(o, s->x[o->coordinate]), time, j);
   }
   return RIC_OK;

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "model/largest.h"
+#include "shooting_fit.h"
 #include "shooting_gaps.h"
 
 /* Residuals above it, relative to 1 + the largest unknown, are no solution's. */
@@ -210,6 +211,27 @@ static ric_status check_room(const ric_shooting *s, const ric_orbit *orbit, ric_
                   orbit->particles, orbit->impacts, s->arcs.coordinates, ric_shooting_impacts(s));
 }
 
+/* Solutions of the equations that are no motions. */
+static ric_status look_for_failure(look *l, ric_error *error) {
+  ric_shooting *s = l->s;
+  ric_orbit *o = l->orbit;
+  const arc_plan *a = &s->arcs;
+  const char *why;
+  double most = residual_tol * (1 + largest(l->z, a->unknowns));
+  double added = a->lambda == NO_UNKNOWN ? 0 : fabs(l->z[a->lambda]) * largest(s->gradient, a->size);
+  RIC_TRY(shooting_fit(s, l->z, l->period, residual_tol, &why, error));
+  if (!why && o->residual <= most && added <= most)
+    return RIC_OK;
+  o->outcome = RIC_FAILED;
+  if (why)
+    snprintf(o->reason, sizeof o->reason, "no motion of this kind: %s", why);
+  else if (!(o->residual <= most))
+    snprintf(o->reason, sizeof o->reason, "equations are violated by %.3g", o->residual);
+  else
+    snprintf(o->reason, sizeof o->reason, "energy is not conserved: the motion closes but for %.3g", added);
+  return RIC_OK;
+}
+
 ric_status ric_shooting_orbit(ric_shooting *s, const double *z, double given, ric_orbit *orbit, ric_error *error) {
   look l = {.s = s, .z = z, .orbit = orbit, .error = error};
   RIC_TRY(check_room(s, orbit, error));
@@ -224,9 +246,5 @@ ric_status ric_shooting_orbit(ric_shooting *s, const double *z, double given, ri
   orbit->harmonic = 0;
   keep_clearance(&l);
   judge(&l);
-  if (!(orbit->residual <= residual_tol * (1 + largest(z, s->arcs.unknowns)))) {
-    orbit->outcome = RIC_FAILED;
-    snprintf(orbit->reason, sizeof orbit->reason, "equations are violated by %.3g", orbit->residual);
-  }
-  return RIC_OK;
+  return look_for_failure(&l, error);
 }

@@ -16,6 +16,8 @@ enum { MOST_STEPS = 200 };
 static const double default_tolerance = 1e-13;
 /* Residuals within this of the tolerance that no longer fall are rounding of unstable motions. */
 static const double rounding = 1e4;
+/* Ends of a conservative motion that are farther apart, relative to 1 + the largest unknown, are not one state. */
+static const double lambda_tol = 1e-6;
 
 /* Motions that take so many times the steps of the guess, and some, lead nowhere: Newton's method tries states of any
  * size, and fast ones would take for ever. */
@@ -160,6 +162,16 @@ static ric_status run(search *k, double tolerance, int *iterations, ric_error *e
                   text_of(code), left);
 }
 
+/* E(x - lambda grad E) = E(x) has other solutions than lambda = 0: they close nothing. */
+static ric_status check_lambda(const ric_shooting *s, const double *z, ric_error *error) {
+  size_t index = s->arcs.lambda;
+  double added = index == NO_UNKNOWN ? 0 : fabs(z[index]) * largest(s->gradient, s->arcs.size);
+  if (added <= lambda_tol * (1 + largest(z, s->arcs.unknowns)))
+    return RIC_OK;
+  return ric_fail(error, RIC_ENUMERIC,
+                  "shooting converges to no motion: its ends are %.3g apart along the gradient of the energy", added);
+}
+
 ric_status ric_shooting_solve(ric_shooting *s, double *z, double given, double tolerance, int *iterations,
                               ric_error *error) {
   ric_error own;
@@ -172,6 +184,8 @@ ric_status ric_shooting_solve(ric_shooting *s, double *z, double given, double t
   if (status == RIC_OK)
     status = run(&k, tol, &count, k.error);
   search_clear(&k);
+  if (status == RIC_OK)
+    status = check_lambda(s, z, error);
   if (iterations)
     *iterations = count;
   return status;

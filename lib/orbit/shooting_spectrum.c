@@ -38,6 +38,8 @@ ric_status shooting_spectrum_create(ric_shooting *s, shooting_spectrum **spectru
   ric_status status = tangent_jump_init(&k->jump, s->system, &s->law, size, error);
   if (status == RIC_OK && is_even(s))
     status = even_spectrum_reserve(&k->even, n, error);
+  else if (status == RIC_OK)
+    status = multiplier_work_init(&k->work, size, error);
   if (status != RIC_OK)
     shooting_spectrum_destroy(spectrum);
   return status;
@@ -49,6 +51,7 @@ void shooting_spectrum_destroy(shooting_spectrum **spectrum) {
     return;
   tangent_jump_clear(&k->jump);
   even_spectrum_clear(&k->even);
+  multiplier_work_clear(&k->work);
   if (k->bordered)
     gsl_matrix_free(k->bordered);
   gsl_permutation_free(k->order);
@@ -191,11 +194,19 @@ static void set_block(ric_shooting *s) {
 
 /* --- results ------------------------------------------------------------------------------------------------------ */
 
+static ric_status reserve(ric_shooting *s, ric_error *error) {
+  if (s->spectrum)
+    return RIC_OK;
+  gsl_error_handler_t *handler = gsl_set_error_handler_off(); /* which would abort when there is no memory */
+  ric_status status = shooting_spectrum_create(s, &s->spectrum, error);
+  gsl_set_error_handler(handler);
+  return status;
+}
+
 ric_status shooting_matrix(ric_shooting *s, const double *z, double given, ric_error *error) {
   double period;
   RIC_TRY(shooting_period(s, z, given, &period, error));
-  if (!s->spectrum)
-    RIC_TRY(shooting_spectrum_create(s, &s->spectrum, error));
+  RIC_TRY(reserve(s, error));
   shooting_spectrum *k = s->spectrum;
   k->grazing = false;
   if (is_even(s))
@@ -304,10 +315,10 @@ ric_status shooting_multipliers(ric_shooting *s, const ric_multiplier_options *o
     say_grazing(s->spectrum, m);
     return RIC_OK;
   }
-  if (!is_even(s))
-    return ric_multipliers_of_matrix(s->spectrum->matrix, s->arcs.size, trivial_of(s), &o, m, error);
   gsl_error_handler_t *handler = gsl_set_error_handler_off();
-  ric_status status = even_multipliers(s, &o, m, error);
+  ric_status status = is_even(s)
+                          ? even_multipliers(s, &o, m, error)
+                          : multiplier_work_find(&s->spectrum->work, s->spectrum->matrix, trivial_of(s), &o, m, error);
   gsl_set_error_handler(handler);
   return status;
 }

@@ -18,6 +18,7 @@
 #include <gsl/gsl_linalg.h>
 
 #include "even_spectrum.h"
+#include "multiplier_work.h"
 #include "shooting_parts.h"
 
 typedef struct shooting_spectrum {
@@ -25,6 +26,7 @@ typedef struct shooting_spectrum {
   double *matrix;       /* [n + m][n + m] G or M */
   double *start, *half; /* [n + m] rates (s, a) there; of even motions */
   even_spectrum even;
+  multiplier_work work; /* of motions that are not even */
   gsl_matrix *bordered; /* [n + 1][n + 1], or [n + m][n + m] */
   gsl_permutation *order;
   double *tau;            /* [2][n + 1] or [2][n + m] */

@@ -9,6 +9,7 @@
 #include <errno.h>
 #include <stdbool.h>
 
+#include "forced_oscillator.h"
 #include "scenario/family_scenario.h"
 #include "solved.h"
 
@@ -40,6 +41,11 @@ void *memalign(size_t alignment, size_t size);
 size_t malloc_usable_size(void *block);
 
 static bool watching;
+static size_t until_refusal; /* the so many-th request from now on is refused; 0: none is */
+
+static bool is_refused(void) {
+  return until_refusal > 0 && --until_refusal == 0;
+}
 
 /* Whether an address lies in FFTW. */
 static bool in_fftw(void *address) {
@@ -56,11 +62,11 @@ static void *counted(void *block, void *caller) {
 }
 
 VISIBLE void *malloc(size_t size) {
-  return counted(__libc_malloc(size), __builtin_return_address(0));
+  return is_refused() ? NULL : counted(__libc_malloc(size), __builtin_return_address(0));
 }
 
 VISIBLE void *calloc(size_t count, size_t size) {
-  return counted(__libc_calloc(count, size), __builtin_return_address(0));
+  return is_refused() ? NULL : counted(__libc_calloc(count, size), __builtin_return_address(0));
 }
 
 VISIBLE void *realloc(void *block, size_t size) {
@@ -384,6 +390,68 @@ static void following_a_family_again_allocates_nothing(void **state) {
   }
 }
 
+/* A forced motion with an impact per period: another kind of multipliers. */
+static void following_a_forced_family_again_allocates_nothing(void **state) {
+  (void)state;
+  forced_oscillator o;
+  forced_oscillator_init(&o);
+  ric_family_problem problem = forced_oscillator_problem(&o, 1, 1, 2);
+  ric_family_options options = ric_family_options_default();
+  double q = 1, u = 1, time = 0.5, z[3];
+  size_t before = 0;
+  ric_family *family = NULL;
+  ric_curve_run run;
+  options.curve.points = 20;
+  assert_int_equal(ric_family_create(&problem, &options, &family, NULL), RIC_OK);
+  assert_int_equal(ric_family_start(family, 5, &q, &u, &time, 1, z, NULL, NULL), RIC_OK);
+  for (int k = 0; k < 2; k++) {
+    before = allocations;
+    assert_int_equal(ric_family_follow(family, z, 5, NULL, NULL, NULL, &run, NULL), RIC_OK);
+    assert_true(run.points > 3);
+  }
+  assert_int_equal(allocations - before, 0);
+  ric_family_destroy(&family);
+  forced_oscillator_clear(&o);
+}
+
+/* A family of a given kind from nothing to its multipliers. */
+static ric_status look_at_a_family(ric_system *system, ric_motion_kind kind) {
+  const ric_family_problem problem = {
+      .system = system, .motion = {.kind = kind, .flow = ric_flow_options_default()}, .parameters = 1, .given = 5};
+  ric_multipliers m = {0};
+  ric_family *family = NULL;
+  const double z[4] = {0};
+  ric_status status = ric_family_create(&problem, NULL, &family, NULL);
+  if (status == RIC_OK)
+    status = ric_multipliers_init(&m, 4, NULL);
+  if (status == RIC_OK)
+    status = ric_shooting_multipliers(ric_family_shooting(family), z, 5, NULL, &m, NULL);
+  ric_multipliers_clear(&m);
+  ric_family_destroy(&family);
+  return status;
+}
+
+static void families_without_memory_are_refused(void **state) {
+  (void)state;
+  ric_lattice lattice = ric_lattice_default(2, RIC_ENDS_FREE);
+  for (int kind = RIC_MOTION_EVEN; kind <= RIC_MOTION_FORCED; kind++) {
+    ric_system *system = NULL;
+    ric_status status = RIC_ENOMEM;
+    size_t k = 0;
+    assert_int_equal(ric_system_create_lattice(&lattice, NULL, 0, &system, NULL), RIC_OK);
+    for (; status == RIC_ENOMEM && k < 1000; k++) {
+      until_refusal = k + 1;
+      status = look_at_a_family(system, (ric_motion_kind)kind);
+      if (until_refusal == 0)
+        assert_int_equal(status, RIC_ENOMEM);
+    }
+    until_refusal = 0;
+    assert_int_equal(status, RIC_OK);
+    assert_true(k > 20);
+    ric_system_destroy(&system);
+  }
+}
+
 static void check_estimate(scenario s, ric_orbit_method method) {
   size_t before = most_live = live;
   solved x = solved_by(method, s);
@@ -419,6 +487,8 @@ int main(void) {
       cmocka_unit_test(following_a_motion_again_allocates_nothing),
       cmocka_unit_test(moving_with_other_numbers_allocates_nothing),
       cmocka_unit_test(following_a_family_again_allocates_nothing),
+      cmocka_unit_test(following_a_forced_family_again_allocates_nothing),
+      cmocka_unit_test(families_without_memory_are_refused),
       cmocka_unit_test(following_a_curve_allocates_nothing),
       cmocka_unit_test(memory_is_what_was_estimated),
   };
