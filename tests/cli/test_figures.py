@@ -79,6 +79,22 @@ model: {type: chain, particles: 1, ends: free, gamma: 0, floor: null, wall: 1, r
 orbit: {motion: forced}
 branch: {parameter: model.force, from: 0.05, to: 0.2, cross: true}
 """,
+    "curves": """kind: branch
+title: grazing, a fold and a period doubling
+model: {type: chain, particles: 1, ends: free, gamma: 0, floor: null, wall: 1, restitution: 0.8, damping: 0.1,
+        force: 0.05, frequency: 1.1}
+orbit: {motion: forced}
+branch: {parameter: model.force, from: 0.05, to: 20, scale: log, cross: true,
+         trace: {parameter: model.frequency, low: 0.3, high: 3}}
+""",
+    "several_curves": """kind: branch
+title: grazing at several dampings, frequency followed
+model: {type: chain, particles: 1, ends: free, gamma: 0, floor: -1, restitution: 0.8, force: 0.3}
+orbit: {motion: forced}
+branch: {parameter: model.frequency, from: 0.6, to: 1.5,
+         trace: {parameter: model.force, low: 0.1, high: 2, first_low: 0.5}}
+sweep: {parameter: model.damping, values: [0.05, 0.1, 0.2]}
+""",
     "branches": """kind: branch
 title: several stiffnesses
 model: {type: chain, particles: 4, ends: periodic, gamma: 0, floor: -1, hertz: 100}
@@ -163,6 +179,9 @@ FIGURES = [
     ("plot_branch.py", "branches", ["--y", "amplitude", "--tasks", "0", "8"]),
     ("plot_branch.py", "logarithmic_branch", ["--y", "period"]),
     ("plot_laws.py", "soft_states", ["--impacts", "rigid_states.h5", "--couplings", "3"]),
+    ("plot_curves.py", "curves", []),
+    ("plot_curves.py", "several_curves", []),
+    ("plot_curves.py", "several_curves", ["--tasks", "1"]),
 ]
 
 # script, file, words of the message
@@ -183,6 +202,8 @@ REFUSALS = [
     ("plot_laws.py", "family.h5", "not a branch with branch.states: true"),
     ("plot_laws.py", "branches.h5", "not a branch with branch.states: true"),
     ("plot_branch.py", "unborn.h5", "no branch of it begins (failed_start)"),
+    ("plot_curves.py", "family.h5", "not a result of kind branch"),
+    ("plot_curves.py", "branch.h5", "no /branch/curve_special in it (the study did not ask for branch.trace)"),
 ]
 
 
@@ -289,6 +310,7 @@ def help_names_the_datasets(scripts, folder, script):
     table = {
         "plot_lyapunov.py": "trajectory/outcome",
         "plot_branch.py": "branch/outcome",
+        "plot_curves.py": "branch/outcome",
         "plot_laws.py": "branch/point_parameter",
     }.get(script, "orbits/outcome")
     assert (

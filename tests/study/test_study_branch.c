@@ -25,6 +25,52 @@ static void the_parameter_may_be_left_out_and_moves_within_a_task(void **state) 
   study_destroy(&s);
 }
 
+static void the_second_parameter_of_curves_moves_within_a_task_too(void **state) {
+  (void)state;
+  const char *set = "branch.trace={parameter: \"model.floor[1]\", low: -3, high: -1}";
+  study *s = parsed(branch, &set, 1);
+  assert_true(study_traced(s)->key == KEY_MODEL_FLOOR && study_traced(s)->item == 1);
+  study_values *v = study_values_create(s);
+  assert_non_null(v);
+  study_values_trace(v, -2.5);
+  study_values_follow(v, 0.05);
+  assert_true(value_number(v, KEY_MODEL_FLOOR, 0) == -1 && value_number(v, KEY_MODEL_FLOOR, 1) == -2.5);
+  study_values_at(v, 1);
+  assert_true(value_number(v, KEY_MODEL_FLOOR, 1) == -2 && value_number(v, KEY_MODEL_GAMMA, 0) == 0.1);
+  study_values_destroy(&v);
+  study_destroy(&s);
+  s = parsed(branch, NULL, 0);
+  assert_int_equal(study_traced(s)->key, KEY_COUNT);
+  study_destroy(&s);
+}
+
+static void words_of_a_list_are_places_among_those_allowed(void **state) {
+  (void)state;
+  const char *set = "branch.trace={parameter: orbit.period, low: 4, high: 6, kinds: [impact_lost, fold]}";
+  study *s = parsed("kind: branch\nmodel: {type: chain, particles: 1, floor: -1}\norbit: {period: 5, at_start: [0]}\n"
+                    "branch: {parameter: model.gamma, from: 0.1, to: 0, trace: {parameter: orbit.period, low: 4, "
+                    "high: 6}}\n",
+                    NULL, 0);
+  study_values *v = study_values_create(s);
+  assert_non_null(v);
+  assert_int_equal(value_count(v, KEY_BRANCH_TRACE_KINDS), 3); /* the default: grazing, fold, period_doubling */
+  for (size_t i = 0; i < 3; i++)
+    assert_true(value_number(v, KEY_BRANCH_TRACE_KINDS, i) == (double)i);
+  const uint64_t digest = study_digest(s);
+  study_values_destroy(&v);
+  study_destroy(&s);
+  s = parsed("kind: branch\nmodel: {type: chain, particles: 1, floor: -1}\norbit: {period: 5, at_start: [0]}\n"
+             "branch: {parameter: model.gamma, from: 0.1, to: 0}\n",
+             &set, 1);
+  v = study_values_create(s);
+  assert_non_null(v);
+  assert_int_equal(value_count(v, KEY_BRANCH_TRACE_KINDS), 2);
+  assert_true(value_number(v, KEY_BRANCH_TRACE_KINDS, 0) == 3 && value_number(v, KEY_BRANCH_TRACE_KINDS, 1) == 1);
+  assert_true(study_digest(s) != digest);
+  study_values_destroy(&v);
+  study_destroy(&s);
+}
+
 static void elements_of_lists_can_be_followed(void **state) {
   (void)state;
   static const char *const sets[] = {"branch.parameter=model.floor[1]", "branch.to=-3", "branch.from=-2",
@@ -74,6 +120,8 @@ static void other_kinds_follow_nothing(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(the_parameter_may_be_left_out_and_moves_within_a_task),
+      cmocka_unit_test(the_second_parameter_of_curves_moves_within_a_task_too),
+      cmocka_unit_test(words_of_a_list_are_places_among_those_allowed),
       cmocka_unit_test(elements_of_lists_can_be_followed),
       cmocka_unit_test(what_is_not_said_is_known_to_be_a_default),
       cmocka_unit_test(a_study_that_restarts_need_not_say_where_it_starts),

@@ -19,6 +19,18 @@ static void every_row_is_complete(void **state) {
   assert_int_equal(schema_find(""), KEY_COUNT);
 }
 
+static void sections_within_sections_have_names_of_their_own(void **state) {
+  (void)state;
+  char names[256];
+  assert_true(schema_is_section("branch") && schema_is_section("branch.trace"));
+  assert_false(schema_is_section("branch.trace.low") || schema_is_section("branch.from") || schema_is_section("bran"));
+  schema_names("branch", names, sizeof names);
+  assert_non_null(strstr(names, "segments, trace"));
+  assert_null(strstr(names, "trace."));
+  schema_names("branch.trace", names, sizeof names);
+  assert_int_equal(strncmp(names, "parameter, low, high", 20), 0);
+}
+
 static void mistyped_names_find_the_nearest_key(void **state) {
   (void)state;
   static const char *const cases[][2] = {{"model.gama", "model.gamma"},
@@ -37,6 +49,8 @@ static void mistyped_names_find_the_nearest_key(void **state) {
                                          {"sweep.point", "sweep.points"},
                                          {"branhc", "branch"},
                                          {"branch.form", "branch.from"},
+                                         {"branch.trce", "branch.trace"},
+                                         {"branch.trace.hihg", "branch.trace.high"},
                                          {"orbit.special_point", "orbit.special_points"},
                                          {"model.zzz", ""},
                                          {"", ""},
@@ -89,6 +103,8 @@ static void allowed_values_are_said_in_words(void **state) {
   assert_allowed(KEY_ORBIT_AT_START, "a list of integers >= 0");
   assert_allowed(KEY_ORBIT_STATES, "true or false");
   assert_allowed(KEY_ORBIT_MULTIPLIERS, "true or false");
+  assert_allowed(KEY_BRANCH_TRACE_KINDS,
+                 "a list of words, each one of grazing, fold, period_doubling, impact_lost, impulse_sign");
 }
 
 static void open_ranges_are_said_and_checked(void **state) {
@@ -145,6 +161,7 @@ static void reference_lists_every_key(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(every_row_is_complete),
+      cmocka_unit_test(sections_within_sections_have_names_of_their_own),
       cmocka_unit_test(mistyped_names_find_the_nearest_key),
       cmocka_unit_test(parameters_are_looked_for_among_the_sweepable),
       cmocka_unit_test(very_long_names_are_near_to_nothing),

@@ -19,7 +19,7 @@
 
 typedef struct checkpoint checkpoint;
 
-enum { CHECKPOINT_MOST_TAILS = 4 };
+enum { CHECKPOINT_MOST_TAILS = 6 };
 
 /** What a checkpoint belongs to; every file begins with it. */
 typedef struct checkpoint_identity {

@@ -14,7 +14,7 @@
 
 #define PART_MAGIC   UINT64_C(0x74706b6368636972) /* "ricchkpt" */
 #define RECORD_MAGIC UINT64_C(0x64726f6365726372) /* "rcrecord" */
-enum { PART_FORMAT = 2, PART_BUFFER_BYTES = 1 << 20, PART_NAME_BYTES = 40 };
+enum { PART_FORMAT = 3, PART_BUFFER_BYTES = 1 << 20, PART_NAME_BYTES = 40 };
 
 typedef struct part_header {
   uint64_t magic, format;
@@ -29,7 +29,7 @@ typedef struct record_header {
 } record_header;
 
 /* Written as they are: no padding that could hold anything. */
-_Static_assert(sizeof(checkpoint_identity) == 120 && sizeof(part_header) == 144, "part header has padding");
+_Static_assert(sizeof(checkpoint_identity) == 136 && sizeof(part_header) == 160, "part header has padding");
 _Static_assert(sizeof(record_header) == 48, "record header has padding");
 
 /** A file found in the folder. */

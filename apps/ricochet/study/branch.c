@@ -29,44 +29,91 @@ static bool can_be_followed(study_key key) {
   return strncmp(schema_row(key)->path, "model.", 6) == 0 || key == KEY_ORBIT_PERIOD || key == KEY_ORBIT_ENERGY;
 }
 
-/* The values that the study gives for the parameter are ones that its key allows. */
-static int check_values(const study *s, const document *d, message *why) {
-  static const study_key keys[] = {KEY_BRANCH_FROM, KEY_BRANCH_TO, KEY_BRANCH_LOW, KEY_BRANCH_HIGH};
+static parameter_use use_of(const study *s, study_key key) {
+  return (parameter_use){.label = schema_row(key)->path,
+                         .noun = key == KEY_BRANCH_PARAMETER ? "branch" : "trace",
+                         .verb = "follow",
+                         .done = "cannot be followed",
+                         .example = "a number of model such as model.gamma, orbit.period or orbit.energy",
+                         .node = s->values[key].node};
+}
+
+/* Finds the number that a key names; it can be followed, and is not swept. */
+static int find_parameter(const study *s, const document *d, study_key key, study_parameter *found, message *why) {
+  const parameter_use use = use_of(s, key);
+  const int code = parameter_find(s, d, &use, s->values[key].text, found, why);
+  if (code)
+    return code;
+  if (!can_be_followed(found->key))
+    return document_refuse(d, use.node, why, "%s = %s cannot be followed, expected %s", use.label, found->name,
+                           use.example);
+  if (sweep_over(s, found->key, found->item))
+    return document_refuse(d, use.node, why, "%s = %s is swept, too, expected one of the two", use.label, found->name);
+  return 0;
+}
+
+/* The values that the study gives for a parameter are ones that its key allows. */
+static int check_values(const study *s, const document *d, const study_parameter *p, const study_key *keys,
+                        size_t count, message *why) {
   int code = 0;
-  for (size_t i = 0; i < sizeof keys / sizeof *keys && !code; i++) {
+  for (size_t i = 0; i < count && !code; i++) {
     char label[160];
-    snprintf(label, sizeof label, "%s (%s)", schema_row(keys[i])->path, s->followed.name);
+    snprintf(label, sizeof label, "%s (%s)", schema_row(keys[i])->path, p->name);
     if (is_set(s, keys[i]))
-      code = typed_check(d, s->values[keys[i]].node, schema_row(s->followed.key), label, first(s, keys[i]), why);
+      code = typed_check(d, s->values[keys[i]].node, schema_row(p->key), label, first(s, keys[i]), why);
   }
   return code;
 }
 
-int branch_read(study *s, const document *d, message *why) {
-  const typed_value *name = &s->values[KEY_BRANCH_PARAMETER];
-  if (!study_is_kind(s, "branch") || !name->present)
-    return 0;
-  const parameter_use use = {.label = "branch.parameter",
-                             .noun = "branch",
-                             .verb = "follow",
-                             .done = "cannot be followed",
-                             .example = "a number of model such as model.gamma, orbit.period or orbit.energy",
-                             .node = name->node};
+static int read_followed(study *s, const document *d, message *why) {
+  static const study_key keys[] = {KEY_BRANCH_FROM, KEY_BRANCH_TO, KEY_BRANCH_LOW, KEY_BRANCH_HIGH};
   study_parameter found;
-  int code = parameter_find(s, d, &use, name->text, &found, why);
+  if (!s->values[KEY_BRANCH_PARAMETER].present)
+    return 0;
+  int code = find_parameter(s, d, KEY_BRANCH_PARAMETER, &found, why);
   if (code)
     return code;
-  if (!can_be_followed(found.key))
-    return document_refuse(d, use.node, why, "branch.parameter = %s cannot be followed, expected %s", found.name,
-                           use.example);
-  if (sweep_over(s, found.key, found.item))
-    return document_refuse(d, use.node, why, "branch.parameter = %s is swept, too, expected one of the two",
-                           found.name);
   s->followed = found;
-  code = check_values(s, d, why);
+  code = check_values(s, d, &found, keys, sizeof keys / sizeof *keys, why);
   if (code || !s->values[KEY_BRANCH_FROM].present)
     return code;
+  const parameter_use use = use_of(s, KEY_BRANCH_PARAMETER);
   return parameter_supply(s, d, &use, use.node, found.key, first(s, KEY_BRANCH_FROM), why);
+}
+
+static int read_traced(study *s, const document *d, message *why) {
+  static const study_key keys[] = {KEY_BRANCH_TRACE_LOW, KEY_BRANCH_TRACE_HIGH};
+  static const study_key firsts[] = {KEY_BRANCH_TRACE_FIRST_LOW, KEY_BRANCH_TRACE_FIRST_HIGH};
+  const typed_value *name = &s->values[KEY_BRANCH_TRACE_PARAMETER];
+  study_parameter found;
+  if (!name->present)
+    return 0;
+  int code = find_parameter(s, d, KEY_BRANCH_TRACE_PARAMETER, &found, why);
+  if (code)
+    return code;
+  if (found.key == s->followed.key && found.item == s->followed.item)
+    return document_refuse(d, name->node, why,
+                           "branch.trace.parameter = %s is what the branch is followed along, expected another one",
+                           found.name);
+  s->traced = found;
+  code = check_values(s, d, &found, keys, sizeof keys / sizeof *keys, why);
+  if (code || s->followed.key == KEY_COUNT)
+    return code;
+  return check_values(s, d, &s->followed, firsts, sizeof firsts / sizeof *firsts, why);
+}
+
+int branch_read(study *s, const document *d, message *why) {
+  if (!study_is_kind(s, "branch"))
+    return 0;
+  const int code = read_followed(s, d, why);
+  return code ? code : read_traced(s, d, why);
+}
+
+bool branch_traces(const study *s) {
+  for (int key = KEY_BRANCH_TRACE_PARAMETER; key <= KEY_BRANCH_TRACE_KINDS; key++)
+    if (s->values[key].node)
+      return true;
+  return false;
 }
 
 /* --- its range and its steps --- */
@@ -108,11 +155,10 @@ static int check_range(const study *s, const document *d, message *why) {
 }
 
 /* Steps that are given do not contradict each other. */
-static int check_steps(const study *s, const document *d, message *why) {
-  static const study_key rising[] = {KEY_BRANCH_STEP_LEAST, KEY_BRANCH_STEP, KEY_BRANCH_STEP_MOST};
+static int check_rising(const study *s, const document *d, const study_key *rising, size_t count, message *why) {
   char small[32], large[32];
-  for (size_t i = 0; i < 2; i++)
-    for (size_t j = i + 1; j < 3; j++)
+  for (size_t i = 0; i < count; i++)
+    for (size_t j = i + 1; j < count; j++)
       if (is_set(s, rising[i]) && is_set(s, rising[j]) && first(s, rising[i]) > first(s, rising[j]))
         return document_refuse(d, s->values[rising[i]].node, why, "%s = %s, expected at most %s = %s",
                                schema_row(rising[i])->path, shown(first(s, rising[i]), small, sizeof small),
@@ -120,17 +166,79 @@ static int check_steps(const study *s, const document *d, message *why) {
   return 0;
 }
 
+static int check_steps(const study *s, const document *d, message *why) {
+  static const study_key steps[] = {KEY_BRANCH_STEP_LEAST, KEY_BRANCH_STEP, KEY_BRANCH_STEP_MOST};
+  return check_rising(s, d, steps, sizeof steps / sizeof *steps, why);
+}
+
+/* --- curves in two parameters --- */
+
+static int check_trace_range(const study *s, const document *d, message *why) {
+  const double low = first(s, KEY_BRANCH_TRACE_LOW), high = first(s, KEY_BRANCH_TRACE_HIGH);
+  const study_parameter *p = &s->traced;
+  const typed_value *at = &s->values[p->key];
+  const double start = at->present ? at->numbers[p->item < 0 ? 0 : p->item] : -INFINITY;
+  char bound[32], own[32];
+  shown(start, own, sizeof own);
+  if (!(start > -INFINITY))
+    return document_refuse(d, s->values[KEY_BRANCH_TRACE_PARAMETER].node, why,
+                           "branch.trace.parameter = %s has no value at which curves begin, expected a number",
+                           p->name);
+  if (!(low < high))
+    return document_refuse(d, s->values[KEY_BRANCH_TRACE_LOW].node, why,
+                           "branch.trace.low = %s, expected less than branch.trace.high = %s",
+                           shown(low, bound, sizeof bound), shown(high, own, sizeof own));
+  if (!(low <= start))
+    return document_refuse(d, s->values[KEY_BRANCH_TRACE_LOW].node, why,
+                           "branch.trace.low = %s leaves out where curves begin, expected at most %s = %s",
+                           shown(low, bound, sizeof bound), p->name, own);
+  if (!(high >= start))
+    return document_refuse(d, s->values[KEY_BRANCH_TRACE_HIGH].node, why,
+                           "branch.trace.high = %s leaves out where curves begin, expected at least %s = %s",
+                           shown(high, bound, sizeof bound), p->name, own);
+  return 0;
+}
+
+static int check_trace_firsts(const study *s, const document *d, message *why) {
+  const study_key low = KEY_BRANCH_TRACE_FIRST_LOW, high = KEY_BRANCH_TRACE_FIRST_HIGH;
+  char small[32], large[32];
+  if (!is_set(s, low) || !is_set(s, high) || first(s, low) < first(s, high))
+    return 0;
+  return document_refuse(d, s->values[low].node, why, "%s = %s, expected less than %s = %s", schema_row(low)->path,
+                         shown(first(s, low), small, sizeof small), schema_row(high)->path,
+                         shown(first(s, high), large, sizeof large));
+}
+
+static int check_trace(const study *s, const document *d, message *why) {
+  static const study_key steps[] = {KEY_BRANCH_TRACE_STEP, KEY_BRANCH_TRACE_STEP_MOST};
+  const typed_value *kinds = &s->values[KEY_BRANCH_TRACE_KINDS];
+  if (!branch_traces(s))
+    return 0;
+  if (kinds->count == 0)
+    return document_refuse(d, kinds->node, why, "branch.trace.kinds is empty, expected at least one kind");
+  int code = check_trace_range(s, d, why);
+  if (!code)
+    code = check_trace_firsts(s, d, why);
+  return code ? code : check_rising(s, d, steps, sizeof steps / sizeof *steps, why);
+}
+
 /* --- its motion --- */
+
+/* The key of the branch that names this one as what moves; KEY_COUNT for none. */
+static study_key mover_of(const study *s, study_key key) {
+  return s->followed.key == key ? KEY_BRANCH_PARAMETER : s->traced.key == key ? KEY_BRANCH_TRACE_PARAMETER : KEY_COUNT;
+}
 
 /* Keys that have their default wherever the motion is of this kind. */
 static int check_needs(const study *s, const document *d, const study_key *keys, size_t count, message *why) {
   int code = 0;
   for (size_t i = 0; i < count && !code; i++) {
+    const study_key mover = mover_of(s, keys[i]);
     code = check_key_default(s, d, keys[i], why);
-    if (!code && s->followed.key == keys[i])
-      code = document_refuse(
-          d, s->values[KEY_BRANCH_PARAMETER].node, why, "branch.parameter = %s, but orbit.motion: %s needs %s = %s",
-          s->followed.name, s->values[KEY_ORBIT_MOTION].text, schema_row(keys[i])->path, schema_row(keys[i])->fallback);
+    if (!code && mover != KEY_COUNT)
+      code = document_refuse(d, s->values[mover].node, why, "%s = %s, but orbit.motion: %s needs %s = %s",
+                             schema_row(mover)->path, s->values[mover].text, s->values[KEY_ORBIT_MOTION].text,
+                             schema_row(keys[i])->path, schema_row(keys[i])->fallback);
   }
   return code;
 }
@@ -161,16 +269,19 @@ static int refuse_key(const study *s, const document *d, study_key key, message 
 /* Which number says how long the motion takes. */
 static int check_given(const study *s, const document *d, message *why) {
   const bool even = motion_is(s, "even"), conservative = motion_is(s, "conservative");
-  const int followed = s->values[KEY_BRANCH_PARAMETER].node;
+  const study_key mover = mover_of(s, KEY_ORBIT_PERIOD);
   const bool energy = is_set(s, KEY_ORBIT_ENERGY), multiple = is_set(s, KEY_ORBIT_FORCING_PERIODS);
-  if (s->followed.key == KEY_ORBIT_PERIOD && (energy || multiple || !(even || conservative)))
-    return document_refuse(d, followed, why,
-                           "branch.parameter = orbit.period, but %s decides about the period, expected another one",
+  if (mover != KEY_COUNT && (energy || multiple || !(even || conservative)))
+    return document_refuse(d, s->values[mover].node, why,
+                           "%s = orbit.period, but %s decides about the period, expected another one",
+                           schema_row(mover)->path,
                            energy     ? "orbit.energy"
                            : multiple ? "orbit.forcing_periods"
                                       : s->values[KEY_ORBIT_MOTION].text);
   if (energy && !even && !conservative)
-    return document_refuse(d, s->followed.key == KEY_ORBIT_ENERGY ? followed : check_node_of_key(s, KEY_ORBIT_ENERGY),
+    return document_refuse(d,
+                           s->followed.key == KEY_ORBIT_ENERGY ? s->values[KEY_BRANCH_PARAMETER].node
+                                                               : check_node_of_key(s, KEY_ORBIT_ENERGY),
                            why, "orbit.energy, but orbit.motion is %s: it can be given of even and conservative ones",
                            s->values[KEY_ORBIT_MOTION].text);
   if (multiple && (conservative || motion_is(s, "autonomous")))
@@ -240,7 +351,7 @@ static int check_guess(const study *s, const document *d, message *why) {
 
 int branch_check(const study *s, const document *d, message *why) {
   static int (*const checks[])(const study *, const document *, message *) = {
-      check_range, check_steps, check_model, check_given, check_sequence, check_excited, check_guess};
+      check_range, check_steps, check_model, check_given, check_trace, check_sequence, check_excited, check_guess};
   int code = 0;
   for (size_t i = 0; i < sizeof checks / sizeof *checks && !code; i++)
     code = checks[i](s, d, why);

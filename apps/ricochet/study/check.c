@@ -46,6 +46,8 @@ static bool needs_period(const study *s, const document *d) {
 static bool is_needed(const study *s, const document *d, const schema_entry *row) {
   if (study_restarts(s) && (row == schema_row(KEY_ORBIT_PERIOD) || row == schema_row(KEY_BRANCH_FROM)))
     return false;
+  if (!branch_traces(s) && strncmp(row->path, "branch.trace.", 13) == 0)
+    return false;
   if (!row->required || (row == schema_row(KEY_ORBIT_PERIOD) && !needs_period(s, d)))
     return false;
   return row == schema_row(KEY_KIND) || schema_concerns(row, s->values[KEY_KIND].text);

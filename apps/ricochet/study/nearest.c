@@ -80,6 +80,7 @@ void schema_nearest(const char *path, char *near, size_t size) {
     consider(&s, "start");
     consider(&s, "time");
     consider(&s, "branch");
+    consider(&s, "branch.trace");
     consider(&s, "restart");
     consider(&s, "sweep");
   }

@@ -23,6 +23,7 @@ struct study {
   sweep_entry sweeps[STUDY_MAX_SWEEPS];
   size_t sweep_count;
   study_parameter followed; /* by a branch; KEY_COUNT for other kinds */
+  study_parameter traced;   /* second one of curves; KEY_COUNT without them */
   uint64_t tasks, digest;
 };
 
@@ -39,11 +40,13 @@ int sweep_value_node(const document *d, const sweep_entry *e, size_t i);
 /** Whether the study is of a kind. */
 bool study_is_kind(const study *s, const char *kind);
 
-/** Finds what a branch is followed along, where the study is one and says so, and gives an omitted key its first value.
- */
+/** Finds what a branch is followed along, where the study is one and says so, and gives an omitted key its first value;
+ *  and the second parameter of curves, where there are any. */
 int branch_read(study *s, const document *d, message *why);
 /** Checks the keys of a branch, and what they make of those of the orbit. */
 int branch_check(const study *s, const document *d, message *why);
+/** Whether curves through its special points are wanted. */
+bool branch_traces(const study *s);
 /** Checks the section `restart`, in place of these. */
 int branch_check_restart(const study *s, const document *d, message *why);
 

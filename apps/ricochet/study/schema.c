@@ -28,14 +28,18 @@ bool schema_is_later_section(const char *name) {
   return false;
 }
 
-bool schema_is_among(const char *word, size_t length, const char *words) {
-  while (words && *words) {
+long schema_find_word(const char *word, size_t length, const char *words) {
+  for (long place = 0; words && *words; place++) {
     const size_t next = strcspn(words, "|");
     if (next == length && memcmp(words, word, length) == 0)
-      return true;
+      return place;
     words += next + (words[next] == '|');
   }
-  return false;
+  return -1;
+}
+
+bool schema_is_among(const char *word, size_t length, const char *words) {
+  return schema_find_word(word, length, words) >= 0;
 }
 
 void schema_kinds(const schema_entry *entry, char *text, size_t size) {

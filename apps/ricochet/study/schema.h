@@ -71,6 +71,15 @@ typedef enum study_key {
   KEY_BRANCH_CROSS,
   KEY_BRANCH_SWITCH,
   KEY_BRANCH_SEGMENTS,
+  KEY_BRANCH_TRACE_PARAMETER,
+  KEY_BRANCH_TRACE_LOW,
+  KEY_BRANCH_TRACE_HIGH,
+  KEY_BRANCH_TRACE_FIRST_LOW,
+  KEY_BRANCH_TRACE_FIRST_HIGH,
+  KEY_BRANCH_TRACE_STEP,
+  KEY_BRANCH_TRACE_STEP_MOST,
+  KEY_BRANCH_TRACE_POINTS,
+  KEY_BRANCH_TRACE_KINDS,
   KEY_RESTART_FILE,
   KEY_RESTART_TASK,
   KEY_RESTART_SPECIAL,
@@ -82,7 +91,7 @@ typedef enum value_type {
   VALUE_NUMBER,  /* finite double, also as a multiple of pi */
   VALUE_INTEGER, /* integral number, |value| < 2^53 */
   VALUE_FLAG,    /* true | false */
-  VALUE_WORD,    /* one of `words` */
+  VALUE_WORD,    /* one of `words`; in a list each as its place among them, from 0 */
   VALUE_TEXT     /* free text */
 } value_type;
 
@@ -92,7 +101,7 @@ typedef struct schema_entry {
   bool list;            /* a list of `type` is allowed */
   bool scalar;          /* a single value is allowed */
   bool null;            /* null is allowed, for a single value and inside a list: read as minus infinity ("none") */
-  bool required;        /* no default; a study needs it, if it concerns its kind (see study_check for orbits) */
+  bool required;        /* no default; a study needs it, if it concerns its kind (see study_check for exceptions) */
   const char *fallback; /* default as YAML text, "" when absent by default */
   double low, high;     /* range of a number, ends included unless open */
   bool low_open, high_open;
@@ -130,7 +139,7 @@ const schema_entry *schema_sweep_row(sweep_key key);
 /** Key of a path, KEY_COUNT when there is none. */
 study_key schema_find(const char *path);
 
-/** Whether keys of the table stand under this top-level name: `model`, `orbit`, `start`, `time`, `branch`,
+/** Whether keys of the table stand under this name: `model`, `orbit`, `start`, `time`, `branch`, `branch.trace`,
  *  `restart`. */
 bool schema_is_section(const char *name);
 /** Whether a top-level name belongs to a later version: `iterate`. */
@@ -148,7 +157,9 @@ void schema_nearest_parameter(const char *path, char *near, size_t size);
 void schema_kinds(const schema_entry *entry, char *text, size_t size);
 /** Whether a key is for studies of this kind. */
 bool schema_concerns(const schema_entry *entry, const char *kind);
-/** Whether a word is one of "a|b|c"; NULL holds none. @param length  of the word */
+/** Place of a word in "a|b|c", from 0; -1 when it is none of them, as of NULL. @param length  of the word */
+long schema_find_word(const char *word, size_t length, const char *words);
+/** Whether it is one of them. */
 bool schema_is_among(const char *word, size_t length, const char *words);
 
 /** What an entry allows, in words: "a number from 0 to 1", "one of periodic, fixed, free". */

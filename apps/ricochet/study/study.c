@@ -16,11 +16,26 @@ static int read_key(study *s, const document *d, int key_node, int node, study_k
   return typed_read(d, key_node, node, schema_row(key), schema_row(key)->path, value, why);
 }
 
-/* Text of a key node if it is short and printable as a C string, "" otherwise: such a name is in no table. */
+/* Text of a key node if it is short, without a dot and printable as a C string, "" otherwise: such a name is in no
+ * table. */
 static const char *key_text(const document *d, int key) {
   const yaml_node_t *n = document_node(d, key);
   const char *text = (const char *)n->data.scalar.value;
-  return n->data.scalar.length < 64 && strlen(text) == n->data.scalar.length ? text : "";
+  const bool sound = n->data.scalar.length < 64 && strlen(text) == n->data.scalar.length && !strchr(text, '.');
+  return sound ? text : "";
+}
+
+static int read_section(study *s, const document *d, const char *section, int node, message *why);
+
+/* One key of a section, or a section within it. */
+static int read_pair(study *s, const document *d, const char *section, const yaml_node_pair_t *pair, message *why) {
+  char path[128];
+  snprintf(path, sizeof path, "%s.%s", section, key_text(d, pair->key));
+  if (schema_is_section(path))
+    return read_section(s, d, path, pair->value, why);
+  const study_key key = schema_find(path);
+  return key == KEY_COUNT ? refuse_unknown_key(d, pair->key, section, why)
+                          : read_key(s, d, pair->key, pair->value, key, why);
 }
 
 static int read_section(study *s, const document *d, const char *section, int node, message *why) {
@@ -31,17 +46,10 @@ static int read_section(study *s, const document *d, const char *section, int no
     schema_names(section, names, sizeof names);
     return document_refuse(d, node, why, "%s = %s, expected a mapping of the keys %s", section, held, names);
   }
-  for (const yaml_node_pair_t *pair = n->data.mapping.pairs.start; pair < n->data.mapping.pairs.top; pair++) {
-    char path[128];
-    snprintf(path, sizeof path, "%s.%s", section, key_text(d, pair->key));
-    const study_key key = schema_find(path);
-    if (key == KEY_COUNT)
-      return refuse_unknown_key(d, pair->key, section, why);
-    const int code = read_key(s, d, pair->key, pair->value, key, why);
-    if (code)
-      return code;
-  }
-  return 0;
+  int code = 0;
+  for (const yaml_node_pair_t *pair = n->data.mapping.pairs.start; pair < n->data.mapping.pairs.top && !code; pair++)
+    code = read_pair(s, d, section, pair, why);
+  return code;
 }
 
 static int read_top(study *s, const document *d, const yaml_node_pair_t *pair, message *why) {
@@ -54,7 +62,7 @@ static int read_top(study *s, const document *d, const yaml_node_pair_t *pair, m
                            "restart and sweep",
                            name);
   const study_key key = schema_find(name);
-  if (key != KEY_COUNT && !strchr(name, '.'))
+  if (key != KEY_COUNT)
     return read_key(s, d, pair->key, pair->value, key, why);
   return strcmp(name, "sweep") == 0 ? 0 : refuse_unknown_key(d, pair->key, "", why);
 }
@@ -141,7 +149,7 @@ int study_parse(const char *name, const char *text, size_t length, const char *c
     free(s);
     return refuse(why, EXIT_RUN, "%s: out of memory", name);
   }
-  s->followed.key = KEY_COUNT;
+  s->followed.key = s->traced.key = KEY_COUNT;
   document *d = NULL;
   int code = document_read((source){.name = s->name, .lines = true}, text, length, &d, why);
   if (!code)
@@ -192,6 +200,9 @@ bool study_restarts(const study *s) {
 
 const study_parameter *study_followed(const study *s) {
   return &s->followed;
+}
+const study_parameter *study_traced(const study *s) {
+  return &s->traced;
 }
 uint64_t study_tasks(const study *s) {
   return s->tasks;

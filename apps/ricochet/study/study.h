@@ -84,6 +84,9 @@ uint64_t study_tasks(const study *s);
 /** What a branch is followed along; of studies of kind `branch`. */
 const study_parameter *study_followed(const study *s);
 
+/** The second parameter of curves through its special points; its key is KEY_COUNT where none are wanted. */
+const study_parameter *study_traced(const study *s);
+
 /** Whether a study of kind `branch` says that it starts from a result. What it takes from there is not known yet, and
  *  how its keys fit together not checked. */
 bool study_restarts(const study *s);
@@ -103,6 +106,8 @@ void study_values_at(study_values *v, uint64_t task);
 
 /** Moves the parameter that a branch is followed along, which starts at `branch.from`. */
 void study_values_follow(study_values *v, double value);
+/** Moves the second parameter of curves, which starts at the study's own value of it. */
+void study_values_trace(study_values *v, double value);
 
 /** Whether the key was given (in the file or by --set) or has a default. */
 bool value_present(const study_values *v, study_key key);
@@ -110,7 +115,8 @@ bool value_present(const study_values *v, study_key key);
 bool value_is_list(const study_values *v, study_key key);
 /** Elements of a list; 1 for a scalar, 0 when absent. */
 size_t value_count(const study_values *v, study_key key);
-/** Element `i` of a number, integer or flag value, scalar or list; null reads as -INFINITY. */
+/** Element `i` of a number, integer or flag value, scalar or list; null reads as -INFINITY; an element of a list of
+ *  words as its place among those of the row. */
 double value_number(const study_values *v, study_key key, size_t i);
 bool value_flag(const study_values *v, study_key key);
 /** Word or text; "" when absent. */

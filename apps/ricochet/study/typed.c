@@ -79,6 +79,16 @@ static bool is_one_of(const reading *r, const char *words) {
   return schema_is_among((const char *)n->data.scalar.value, n->data.scalar.length, words);
 }
 
+/* A word of a list as its place among those that are allowed. */
+static int read_place(const reading *r, double *place) {
+  const yaml_node_t *n = document_node(r->d, r->node);
+  const long found = n->type == YAML_SCALAR_NODE
+                         ? schema_find_word((const char *)n->data.scalar.value, n->data.scalar.length, r->row->words)
+                         : -1;
+  *place = (double)found;
+  return found < 0 ? refuse_value(r, "") : 0;
+}
+
 static int read_text(const reading *r, char **text) {
   const yaml_node_t *n = document_node(r->d, r->node);
   if (n->type != YAML_SCALAR_NODE || document_is_null(r->d, r->node))
@@ -102,7 +112,7 @@ static int read_scalar(const reading *r, typed_value *value, size_t i) {
   case VALUE_FLAG:
     return read_flag(r, &value->numbers[i]);
   default:
-    return read_text(r, &value->text);
+    return value->list ? read_place(r, &value->numbers[i]) : read_text(r, &value->text);
   }
 }
 
@@ -128,7 +138,7 @@ int typed_read(const document *d, int key, int node, const schema_entry *row, co
   const char *assigned = document_assigned_by(d, node);
   value->line = assigned ? 0 : document_line(d, key);
   value->assigned = assigned ? strdup(assigned) : NULL;
-  const bool numeric = row->type != VALUE_WORD && row->type != VALUE_TEXT;
+  const bool numeric = value->list || (row->type != VALUE_WORD && row->type != VALUE_TEXT);
   if (numeric)
     value->numbers = calloc(value->count + 1, sizeof *value->numbers);
   if ((assigned && !value->assigned) || (numeric && !value->numbers))
@@ -136,18 +146,34 @@ int typed_read(const document *d, int key, int node, const schema_entry *row, co
   return read_items(r, value);
 }
 
+/* The default of a list: "[]", or words as in "[fold, grazing]". */
+static bool default_list(const schema_entry *row, typed_value *value) {
+  size_t most = 1;
+  for (const char *c = row->fallback; *c; c++)
+    most += *c == ',';
+  value->list = true;
+  value->numbers = calloc(most + 1, sizeof *value->numbers);
+  for (const char *word = row->fallback + 1; value->numbers && *word && *word != ']'; word += strspn(word, ", ")) {
+    const size_t length = strcspn(word, ",]");
+    value->numbers[value->count++] = (double)schema_find_word(word, length, row->words);
+    word += length;
+  }
+  return value->numbers != NULL;
+}
+
 bool typed_default(const schema_entry *row, typed_value *value) {
   *value = (typed_value){0};
   if (row->required || !row->fallback || !*row->fallback)
     return true;
   value->present = true;
-  value->list = strcmp(row->fallback, "[]") == 0;
-  value->count = value->list ? 0 : 1;
+  if (*row->fallback == '[')
+    return default_list(row, value);
+  value->count = 1;
   if (row->type == VALUE_WORD || row->type == VALUE_TEXT)
     return (value->text = strdup(row->fallback)) != NULL;
   value->numbers = calloc(value->count + 1, sizeof *value->numbers);
-  if (!value->numbers || value->list)
-    return value->numbers != NULL;
+  if (!value->numbers)
+    return false;
   if (row->type == VALUE_FLAG)
     value->numbers[0] = strcmp(row->fallback, "true") == 0;
   else if (strcmp(row->fallback, "null") == 0)

@@ -9,8 +9,8 @@ typedef struct typed_value {
   bool present; /* given, or with a default */
   bool list;
   size_t count;    /* elements of a list, 1 for a scalar */
-  double *numbers; /* [count] numbers, integers, flags as 0 and 1; NULL for words and text */
-  char *text;      /* word or text */
+  double *numbers; /* [count] numbers, integers, flags as 0 and 1, words of a list as their places; else NULL */
+  char *text;      /* word or text outside a list */
   int node;        /* in the document, while there is one; 0 for a default */
   size_t line;     /* of the key in the file; 0 for a default or an assignment */
   char *assigned;  /* "--set path=value" that gave it, NULL for none */

@@ -32,6 +32,11 @@ static bool follows(const study *s) {
   return s->followed.key != KEY_COUNT && s->values[KEY_BRANCH_FROM].present;
 }
 
+/* The same of a period that it takes from there. */
+static bool traces(const study *s) {
+  return s->traced.key != KEY_COUNT && s->values[s->traced.key].present;
+}
+
 study_values *study_values_create(const study *s) {
   study_values *v = calloc(1, sizeof *v);
   if (!v)
@@ -44,7 +49,7 @@ study_values *study_values_create(const study *s) {
       study_values_destroy(&v);
       return NULL;
     }
-  if (follows(s) && !copy_varied(v, s->followed.key))
+  if ((follows(s) && !copy_varied(v, s->followed.key)) || (traces(s) && !copy_varied(v, s->traced.key)))
     study_values_destroy(&v);
   if (v)
     study_values_at(v, 0);
@@ -67,10 +72,16 @@ void study_values_at(study_values *v, uint64_t task) {
   }
   if (follows(v->s))
     study_values_follow(v, v->s->values[KEY_BRANCH_FROM].numbers[0]);
+  if (traces(v->s))
+    study_values_trace(v, v->s->values[v->s->traced.key].numbers[place_of(v->s->traced.item)]);
 }
 
 void study_values_follow(study_values *v, double value) {
   v->copies[v->s->followed.key][place_of(v->s->followed.item)] = value;
+}
+
+void study_values_trace(study_values *v, double value) {
+  v->copies[v->s->traced.key][place_of(v->s->traced.item)] = value;
 }
 
 bool value_present(const study_values *v, study_key key) {

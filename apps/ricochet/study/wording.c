@@ -68,6 +68,11 @@ void schema_allowed(const schema_entry *entry, char *text, size_t size) {
     return;
   }
   *text = 0;
+  if (entry->type == VALUE_WORD) {
+    append(text, size, "a list of words, each ");
+    append_words(entry, text, size);
+    return;
+  }
   append(text, size, "a list of %s", entry->type == VALUE_INTEGER ? "integers" : "numbers");
   append_range(entry, text, size);
 }
@@ -76,7 +81,7 @@ static void append_name(const char *section, const char *path, char *text, size_
   const size_t length = strlen(section);
   const char *name = length ? path + length + 1 : path;
   const bool inside = length ? strncmp(path, section, length) == 0 && path[length] == '.' : !strchr(path, '.');
-  if (inside)
+  if (inside && !strchr(name, '.'))
     append(text, size, "%s%s", *text ? ", " : "", name);
 }
 
@@ -91,4 +96,5 @@ void schema_names(const char *section, char *text, size_t size) {
   append_name(section, "start", text, size);
   append_name(section, "time", text, size);
   append_name(section, "sweep", text, size);
+  append_name(section, "branch.trace", text, size);
 }

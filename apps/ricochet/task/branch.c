@@ -75,7 +75,7 @@ static int branch_plan(const study *s, kind_plan *plan, message *why) {
   if (!code)
     code = machine_refuse_size(s, "a branch", plan->memory, why);
   if (!code)
-    branch_lay_out(v, study_followed(s)->name, plan);
+    branch_lay_out(v, study_followed(s)->name, study_traced(s)->key == KEY_COUNT ? NULL : study_traced(s)->name, plan);
   study_values_destroy(&v);
   return code ? code : check_only_task(s, why);
 }
@@ -116,8 +116,8 @@ static void fill_row(const branch_result *result, const table *t, unsigned char 
 
 static int branch_evaluate(worker *w, const kind_plan *plan, uint64_t task, unsigned char *row, records *tails) {
   branch_result result = {0};
-  uint64_t before[BRANCH_TAILS];
-  for (size_t k = 0; k < BRANCH_TAILS; k++)
+  uint64_t before[BRANCH_TAILS_WITH_CURVES];
+  for (size_t k = 0; k < plan->tail_count; k++)
     before[k] = tails[k].count;
   study_values_at(w->values, task);
   ric_status status = follow(w, plan, tails, &result);
@@ -125,7 +125,7 @@ static int branch_evaluate(worker *w, const kind_plan *plan, uint64_t task, unsi
   if (status == RIC_ESTOPPED)
     return -1;
   if (status != RIC_OK) { /* of a branch that does not fit, nothing is kept */
-    for (size_t k = 0; k < BRANCH_TAILS; k++)
+    for (size_t k = 0; k < plan->tail_count; k++)
       records_cut(&tails[k], before[k]);
     result = (branch_result){.outcome = BRANCH_REFUSED, .reason = "no memory for its points"};
   }

@@ -5,8 +5,17 @@
 #include "kind.h"
 
 /** Tails of a branch: its points, its special points, the impacts of these (and of points whose states are stored), its
- * segments. */
-enum { BRANCH_POINTS, BRANCH_SPECIAL, BRANCH_IMPACTS, BRANCH_SEGMENTS, BRANCH_TAILS };
+ * segments; where the study asks for curves in two parameters, their points and how they ended. */
+enum {
+  BRANCH_POINTS,
+  BRANCH_SPECIAL,
+  BRANCH_IMPACTS,
+  BRANCH_SEGMENTS,
+  BRANCH_TAILS,
+  BRANCH_CURVES = BRANCH_TAILS,
+  BRANCH_CURVE_ENDS,
+  BRANCH_TAILS_WITH_CURVES
+};
 
 /** Outcomes of a segment: how its curve ended, and that it never began. */
 enum { BRANCH_FAILED_START = RIC_CURVE_ENDS, BRANCH_REFUSED, BRANCH_OUTCOMES };
@@ -24,8 +33,9 @@ typedef enum branch_origin {
 enum { BRANCH_REASON_BYTES = 256 };
 
 /** Lays out the row and the tails.
- *  @param followed  name of the parameter, borrowed; the columns of its values bear it */
-void branch_lay_out(const study_values *v, const char *followed, kind_plan *plan);
+ *  @param followed  name of the parameter, borrowed; the columns of its values bear it
+ *  @param traced  that of the second one, borrowed; NULL without curves */
+void branch_lay_out(const study_values *v, const char *followed, const char *traced, kind_plan *plan);
 
 /** Writes a point of a segment, or a special one, into its record.
  *  @param value  of the parameter */
@@ -34,5 +44,15 @@ void branch_put_point(const table *t, const ric_family_point *point, double valu
 /** @param before  number of points of the task up to it; @param particle  that it concerns, -1 for none */
 void branch_put_special(const table *t, const ric_family_point *point, double value, size_t segment, uint64_t before,
                         long long particle, unsigned char *record);
+
+/** Writes a point of a curve into its record.
+ *  @param special  special point of the task that the curve goes through
+ *  @param part  of the curve
+ *  @param value  of the parameter */
+void branch_put_curve_point(const table *t, const ric_family_curve_point *point, long long special, int part,
+                            double value, unsigned char *record);
+/** How a part of a curve ended. @param points  that it has */
+void branch_put_curve_end(const table *t, long long special, int part, int outcome, const char *reason, uint64_t points,
+                          unsigned char *record);
 
 #endif

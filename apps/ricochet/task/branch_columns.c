@@ -145,6 +145,36 @@ static const column segment_columns[] = {
      .source = "count"},
 };
 
+static const column curve_columns[] = {
+    {.name = "curve_special", INTEGER, .long_name = "special point of the task that the curve goes through", CURVE},
+    {.name = "curve_part",
+     INTEGER,
+     .long_name = "0: from there towards larger values of the second parameter, 1: towards smaller ones",
+     CURVE},
+    {.name = "curve_parameter", NUMBER, .long_name = "the key that is followed", CURVE},
+    {.name = "curve_second", NUMBER, .long_name = "the second key", CURVE},
+    {.name = "curve_period", NUMBER, .long_name = "period", CURVE},
+    {.name = "curve_energy", NUMBER, .long_name = "energy, of motions with losses at their first state", CURVE},
+    {.name = "curve_outcome",
+     WORD(orbit_outcome_names),
+     .long_name = "whether the motion is one",
+     .source = "[JAP] (9)"},
+    {.name = "curve_iterations", INTEGER, .long_name = "corrections by Newton's method", .source = "count"},
+};
+
+static const column curve_end_columns[] = {
+    {.name = "curve_end_special", INTEGER, .long_name = "special point of the task that the curve goes through", CURVE},
+    {.name = "curve_end_part", INTEGER, .long_name = "part of the curve", CURVE},
+    {.name = "curve_end_outcome", WORD(outcome_names), .long_name = "how it ended", CURVE},
+    {.name = "curve_end_reason",
+     .type = COLUMN_TEXT,
+     .text_bytes = BRANCH_REASON_BYTES,
+     .units = "1",
+     .long_name = "why; empty when the outcome speaks for itself",
+     CURVE},
+    {.name = "curve_end_points", INTEGER, .long_name = "number of its points", .source = "count"},
+};
+
 #define COUNT(columns) (sizeof(columns) / sizeof *(columns))
 
 static void lay_out_tail(tail *to, const char *row_axis, const char *offset, const char *meaning, const column *columns,
@@ -160,7 +190,19 @@ static void put_name(table *t, const char *column_name, const char *followed) {
       t->columns[i].long_name = followed;
 }
 
-void branch_lay_out(const study_values *v, const char *followed, kind_plan *plan) {
+static void lay_out_curves(const char *followed, const char *traced, kind_plan *plan) {
+  plan->tail_count = BRANCH_TAILS_WITH_CURVES;
+  lay_out_tail(&plan->tails[BRANCH_CURVES], "curve_row", "curve_offset",
+               "points of a task's curves: from its offset up to the next", curve_columns, COUNT(curve_columns), NULL,
+               0);
+  lay_out_tail(&plan->tails[BRANCH_CURVE_ENDS], "curve_end_row", "curve_end_offset",
+               "ends of a task's curves: from its offset up to the next", curve_end_columns, COUNT(curve_end_columns),
+               NULL, 0);
+  put_name(&plan->tails[BRANCH_CURVES].records, "curve_parameter", followed);
+  put_name(&plan->tails[BRANCH_CURVES].records, "curve_second", traced);
+}
+
+void branch_lay_out(const study_values *v, const char *followed, const char *traced, kind_plan *plan) {
   const size_t n = (size_t)value_number(v, KEY_MODEL_PARTICLES, 0);
   const table_axis state = {"particle", n};
   table_axis axes[2];
@@ -185,6 +227,8 @@ void branch_lay_out(const study_values *v, const char *followed, kind_plan *plan
                "segments of a task: from its offset up to the next", segment_columns, COUNT(segment_columns), NULL, 0);
   put_name(&plan->tails[BRANCH_POINTS].records, "point_parameter", followed);
   put_name(&plan->tails[BRANCH_SPECIAL].records, "special_parameter", followed);
+  if (traced)
+    lay_out_curves(followed, traced, plan);
 }
 
 /* Of all particles at the two times that the orbit keeps. */
@@ -246,4 +290,25 @@ void branch_put_special(const table *t, const ric_family_point *point, double va
   row_put_number(record, table_column(t, "special_arclength"), point->arclength);
   row_put_numbers(record, table_column(t, "special_q"), o->q);
   row_put_numbers(record, table_column(t, "special_v"), o->v);
+}
+
+void branch_put_curve_point(const table *t, const ric_family_curve_point *point, long long special, int part,
+                            double value, unsigned char *record) {
+  row_put_integer(record, table_column(t, "curve_special"), special);
+  row_put_integer(record, table_column(t, "curve_part"), part);
+  row_put_number(record, table_column(t, "curve_parameter"), value);
+  row_put_number(record, table_column(t, "curve_second"), point->second);
+  row_put_number(record, table_column(t, "curve_period"), point->orbit->period);
+  row_put_number(record, table_column(t, "curve_energy"), point->orbit->energy);
+  row_put_word(record, table_column(t, "curve_outcome"), (int)point->orbit->outcome);
+  row_put_integer(record, table_column(t, "curve_iterations"), point->iterations);
+}
+
+void branch_put_curve_end(const table *t, long long special, int part, int outcome, const char *reason, uint64_t points,
+                          unsigned char *record) {
+  row_put_integer(record, table_column(t, "curve_end_special"), special);
+  row_put_integer(record, table_column(t, "curve_end_part"), part);
+  row_put_word(record, table_column(t, "curve_end_outcome"), outcome);
+  row_put_text(record, table_column(t, "curve_end_reason"), reason);
+  row_put_integer(record, table_column(t, "curve_end_points"), (long long)points);
 }

@@ -10,6 +10,10 @@ static const double pi = 3.14159265358979323846;
 
 /* Steps where the study gives none, as parts of the way from the start to the other end. */
 static const double first_part = 0.02, most_part = 0.1, least_part = 1e-6 /* of the first step */;
+/* Of curves in two parameters, as parts of the range of the second one: shorter, so that their points draw smoothly.
+ * They often end where the motions do, at a period without end or a point that is special twice: there, steps that
+ * shrink further cost much and show nothing. */
+static const double trace_first_part = 0.01, trace_most_part = 0.02, trace_least_part = 1e-3 /* of the first step */;
 
 /* --- parameters --- */
 
@@ -53,17 +57,36 @@ static double given_of(const study_values *v) {
   return branch_family_gives_energy(v) ? value_number(v, KEY_ORBIT_ENERGY, 0) : branch_family_period(v);
 }
 
-/* Puts a parameter into the values, and these into the system. */
-static ric_status set(ric_system *system, const double *p, double *given, void *user, ric_error *error) {
-  branch_family *b = user;
+static double second_of(const branch_family *b) {
+  return b->traced ? value_number(b->values, b->traced->key, b->traced->item < 0 ? 0 : (size_t)b->traced->item) : 0;
+}
+
+static bool is_of_model(const study_parameter *p) {
+  return p && p->key != KEY_ORBIT_PERIOD && p->key != KEY_ORBIT_ENERGY;
+}
+
+/* Puts the parameters into the values. */
+static ric_status move(branch_family *b, const double *p, ric_error *error) {
   const double value = branch_family_value(b, p[0]);
   if (schema_check(schema_row(b->followed->key), value) != FIT_OK)
     return ric_fail(error, RIC_ENUMERIC, "%s = %g is out of range", b->followed->name, value);
+  if (b->traced && schema_check(schema_row(b->traced->key), p[1]) != FIT_OK)
+    return ric_fail(error, RIC_ENUMERIC, "%s = %g is out of range", b->traced->name, p[1]);
   study_values_follow(b->values, value);
+  if (b->traced)
+    study_values_trace(b->values, p[1]);
+  return RIC_OK;
+}
+
+/* Puts the parameters into the values, and these into the system. */
+static ric_status set(ric_system *system, const double *p, double *given, void *user, ric_error *error) {
+  branch_family *b = user;
+  RIC_TRY(move(b, p, error));
   *given = given_of(b->values);
   if (motion_of(b->values) != RIC_MOTION_AUTONOMOUS && !isfinite(*given))
-    return ric_fail(error, RIC_ENUMERIC, "%s = %g: the force has no period", b->followed->name, value);
-  if (b->followed->key == KEY_ORBIT_PERIOD || b->followed->key == KEY_ORBIT_ENERGY)
+    return ric_fail(error, RIC_ENUMERIC, "model.frequency = %g: the force has no period",
+                    value_number(b->values, KEY_MODEL_FREQUENCY, 0));
+  if (!is_of_model(b->followed) && !is_of_model(b->traced))
     return RIC_OK;
   lattice_model_read(&b->model, b->values);
   RIC_TRY(ric_system_set_lattice(system, &b->model.lattice, error));
@@ -79,6 +102,7 @@ static size_t count_hits(const study_values *v) {
 int branch_family_init(branch_family *b, const study *s, study_values *v) {
   *b = (branch_family){.values = v,
                        .followed = study_followed(s),
+                       .traced = study_traced(s)->key == KEY_COUNT ? NULL : study_traced(s),
                        .log = strcmp(value_word(v, KEY_BRANCH_SCALE), "log") == 0,
                        .hits = calloc(count_hits(v) + 1, sizeof *b->hits),
                        .times = calloc(value_count(v, KEY_ORBIT_TIMES) + 1, sizeof *b->times)};
@@ -118,7 +142,7 @@ static bool is_compliant(const study_values *v) {
   return value_number(v, KEY_MODEL_HERTZ, 0) > 0;
 }
 
-static ric_status describe(branch_family *b, ric_poll poll, ric_family_problem *problem, ric_error *error) {
+static ric_status describe(branch_family *b, ric_family_problem *problem, ric_error *error) {
   const study_values *v = b->values;
   const bool jumps = !is_compliant(v);
   const size_t starts = value_count(v, KEY_ORBIT_AT_START), halves = value_count(v, KEY_ORBIT_AT_HALF);
@@ -137,10 +161,11 @@ static ric_status describe(branch_family *b, ric_poll poll, ric_family_problem *
                                              .sequence = b->hits + starts + halves,
                                              .count = jumps ? value_count(v, KEY_ORBIT_SEQUENCE) : 0,
                                              .flow = ric_flow_options_default(),
-                                             .poll = poll},
+                                             .poll = b->poll},
                                   .set = set,
                                   .user = b,
-                                  .parameters = 1,
+                                  .parameters = b->traced ? 2 : 1,
+                                  .second = second_of(b),
                                   .given = given_of(v)};
   return RIC_OK;
 }
@@ -155,7 +180,7 @@ static double step(const study_values *v, study_key key, double fallback) {
   return value > -INFINITY ? value : fallback;
 }
 
-static ric_family_options options_of(const branch_family *b, ric_poll poll) {
+static ric_family_options options_of(const branch_family *b) {
   const study_values *v = b->values;
   const double from = value_number(v, KEY_BRANCH_FROM, 0), to = value_number(v, KEY_BRANCH_TO, 0);
   const double way = fabs(branch_family_parameter(b, to) - branch_family_parameter(b, from));
@@ -167,7 +192,7 @@ static ric_family_options options_of(const branch_family *b, ric_poll poll) {
   o.curve.direction = to > from ? 1 : -1;
   o.curve.points = (size_t)value_number(v, KEY_BRANCH_POINTS, 0);
   o.curve.newton_tol = value_number(v, KEY_BRANCH_TOLERANCE, 0);
-  o.curve.poll = poll;
+  o.curve.poll = b->poll;
   /* A step that is given moves the defaults of the others. */
   const double least = step(v, KEY_BRANCH_STEP_LEAST, 0), most = step(v, KEY_BRANCH_STEP_MOST, INFINITY);
   o.curve.step = step(v, KEY_BRANCH_STEP, fmax(least, fmin(most, first_part * way)));
@@ -176,12 +201,29 @@ static ric_family_options options_of(const branch_family *b, ric_poll poll) {
   return o;
 }
 
+ric_curve_options branch_family_curve_options(const branch_family *b, int direction) {
+  const study_values *v = b->values;
+  ric_curve_options o = ric_curve_options_default();
+  o.p_low = value_number(v, KEY_BRANCH_TRACE_LOW, 0);
+  o.p_high = value_number(v, KEY_BRANCH_TRACE_HIGH, 0);
+  o.direction = direction;
+  o.points = (size_t)value_number(v, KEY_BRANCH_TRACE_POINTS, 0);
+  o.newton_tol = value_number(v, KEY_BRANCH_TOLERANCE, 0);
+  o.poll = b->poll;
+  const double way = o.p_high - o.p_low, most = step(v, KEY_BRANCH_TRACE_STEP_MOST, INFINITY);
+  o.step = step(v, KEY_BRANCH_TRACE_STEP, fmin(most, trace_first_part * way));
+  o.step_least = trace_least_part * o.step;
+  o.step_most = most < INFINITY ? most : fmax(o.step, trace_most_part * way);
+  return o;
+}
+
 ric_status branch_family_open(branch_family *b, ric_poll poll, ric_error *error) {
   ric_family_problem problem;
-  const ric_family_options options = options_of(b, poll);
+  b->poll = poll;
+  const ric_family_options options = options_of(b);
   lattice_model_read(&b->model, b->values);
   RIC_TRY(ric_system_create_lattice(&b->model.lattice, b->model.obstacles, b->model.obstacle_count, &b->system, error));
-  RIC_TRY(describe(b, poll, &problem, error));
+  RIC_TRY(describe(b, &problem, error));
   return ric_family_create(&problem, &options, &b->family, error);
 }
 
@@ -190,7 +232,8 @@ ric_status branch_family_open(branch_family *b, ric_poll poll, ric_error *error)
 double branch_family_bytes(const study_values *v) {
   const double n = value_number(v, KEY_MODEL_PARTICLES, 0);
   const bool extends = value_flag(v, KEY_BRANCH_CROSS) || value_flag(v, KEY_BRANCH_SWITCH);
-  const double segments = extends ? value_number(v, KEY_BRANCH_SEGMENTS, 0) : 1;
+  const bool traces = value_present(v, KEY_BRANCH_TRACE_PARAMETER); /* a curve takes as much as a segment */
+  const double segments = (extends ? value_number(v, KEY_BRANCH_SEGMENTS, 0) : 1) + (traces ? 1 : 0);
   const double arcs = 1 + (double)value_count(v, KEY_ORBIT_SEQUENCE) + (extends ? 1 : 0);
   const double unknowns = 2 * n * arcs + 8;
   return 8 * segments * (8 * unknowns * unknowns + 12 * (2 * n) * (2 * n)) + n * LATTICE_MODEL_BYTES;

@@ -7,8 +7,9 @@
 #include "lattice_model.h"
 
 typedef struct branch_family {
-  study_values *values; /* borrowed; what is followed moves in them */
-  const study_parameter *followed;
+  study_values *values;                     /* borrowed; what is followed moves in them */
+  const study_parameter *followed, *traced; /* the second one is NULL without curves */
+  ric_poll poll;
   bool log; /* the curve's parameter is the logarithm */
   lattice_model model;
   ric_system *system;
@@ -35,6 +36,9 @@ double branch_family_value(const branch_family *b, double parameter);
 bool branch_family_gives_energy(const study_values *v);
 /** The period that the values say: of the force, or orbit.period. */
 double branch_family_period(const study_values *v);
+
+/** How a curve in two parameters is followed. @param direction  in which the second one moves first, +1 or -1 */
+ric_curve_options branch_family_curve_options(const branch_family *b, int direction);
 
 /** Bytes that a rank computes with. */
 double branch_family_bytes(const study_values *v);

@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "branch_trace.h"
+
 /* Families meet at one point, which both may find: it is gone over once. Its numbers agree to this, relative to 1. */
 static const double same_point = 1e-6;
 
@@ -35,7 +37,8 @@ typedef struct walk {
   size_t count, most, met;
   size_t current;
   size_t points, specials; /* of the task */
-  ric_status status;       /* of the callback: RIC_OK, RIC_ENOMEM, RIC_ESTOPPED */
+  branch_result *result;
+  ric_status status; /* of the callback: RIC_OK, RIC_ENOMEM, RIC_ESTOPPED */
 } walk;
 
 static void keep_reason(char *to, const char *reason) {
@@ -185,6 +188,12 @@ static void look_further(walk *w, const ric_family_point *point) {
     go_over(w, what == RIC_FAMILY_GRAZING ? BRANCH_FROM_GRAZING : BRANCH_FROM_IMPACT_LOST, point, ric_family_cross);
 }
 
+static void trace(walk *w, const ric_family_point *point) {
+  if (w->status == RIC_OK && branch_trace_wanted(w->b, point->kind))
+    w->status = branch_trace(w->b, w->segments[w->current].family, point, (long long)w->specials - 1, w->plan, w->tails,
+                             w->result);
+}
+
 static int see(const ric_family_point *point, void *user) {
   walk *w = user;
   if (point->kind == RIC_FAMILY_REGULAR)
@@ -192,6 +201,7 @@ static int see(const ric_family_point *point, void *user) {
   else {
     add_special(w, point);
     look_further(w, point);
+    trace(w, point);
   }
   return w->status != RIC_OK;
 }
@@ -281,6 +291,7 @@ ric_status branch_walk(branch_family *b, const branch_guess *guess, const kind_p
   walk w = {.b = b,
             .plan = plan,
             .tails = tails,
+            .result = result,
             .even = strcmp(value_word(b->values, KEY_ORBIT_MOTION), "even") == 0,
             .states = value_flag(b->values, KEY_BRANCH_STATES),
             .crosses = value_flag(b->values, KEY_BRANCH_CROSS),

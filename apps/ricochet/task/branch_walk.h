@@ -15,7 +15,7 @@ typedef struct branch_result {
 } branch_result;
 
 /** Follows an open family from a guess, and further segments where the study asks for them.
- *  @param tails  [BRANCH_TAILS], behind the records of earlier tasks
+ *  @param tails  [plan->tail_count], behind the records of earlier tasks
  *  @returns RIC_OK, also for a branch that does not begin; RIC_ESTOPPED; RIC_ENOMEM when records do not fit */
 ric_status branch_walk(branch_family *b, const branch_guess *guess, const kind_plan *plan, records *tails,
                        branch_result *result);

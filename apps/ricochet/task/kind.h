@@ -12,7 +12,7 @@
 #include "records.h"
 #include "table.h"
 
-enum { KIND_MOST_TAILS = 4 };
+enum { KIND_MOST_TAILS = 6 };
 
 /** A table of records, of which each task has as many as it has: task i owns the records offset[i] to offset[i + 1]. */
 typedef struct tail {
