@@ -19,7 +19,7 @@ import figures
 
 QUANTITIES = {
     "energy": "energy",
-    "amplitude": "largest displacement at $t = 0$ and $T/2$",
+    "amplitude": "largest displacement over the period",
     "clearance": "smallest gap",
     "period": "period $T$",
     "multiplier_max": "largest modulus of a multiplier",

@@ -42,7 +42,8 @@ static work_done cubic(size_t points, int multipliers) {
   family_scenario s;
   int failed = family_scenario_two_masses(&s, 7.2, 5);
   s.options.multipliers = multipliers;
-  s.options.curve.newton_tol = 1e-10;
+  s.options.curve.newton_tol = 1e-10; /* which the flow's errors, some times its tolerance, are to stay below */
+  s.problem.motion.flow.tolerance = 1e-13;
   s.options.curve.points = points;
   s.options.curve.step = s.options.curve.step_most = 0.01;
   return walk(&s, failed, 2);

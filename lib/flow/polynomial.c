@@ -191,8 +191,23 @@ int ric_poly_minimum(const double *c, int degree, double cutoff, double toleranc
   return 1;
 }
 
+/* Whether there is no minimum inside, as far as cheap bounds can say: the slope keeps its sign, or it falls everywhere.
+ */
+static int has_no_valley(const double *c, int degree) {
+  double low = degree > 0 ? c[1] : 0, high = low, curvature = degree > 1 ? 2 * c[2] : 0, size = fabs(low);
+  for (int j = 2; j <= degree; j++) {
+    double slope = j * c[j];
+    size += fabs(slope);
+    low += slope < 0 ? slope : 0;
+    high += slope > 0 ? slope : 0;
+    curvature += j > 2 && slope > 0 ? (j - 1) * slope : 0;
+  }
+  double rounding = bound_rounding * size;
+  return low > rounding || high < -rounding || curvature < -rounding * degree;
+}
+
 int ric_poly_first_minimum(const double *c, int degree, double cutoff, double *at, double *value) {
-  if (lies_above(c, degree, cutoff))
+  if (has_no_valley(c, degree) || lies_above(c, degree, cutoff))
     return 0;
   piece stack[DEPTH + 1];
   int depth = 1, before = 0; /* sign of the slope at the end of the pieces done */

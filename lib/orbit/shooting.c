@@ -37,7 +37,7 @@ static ric_status allocate(ric_shooting *s, ric_error *error) {
   size_t size = s->arcs.size, c = s->arcs.count > 1 ? size : arcs_first_numbers(&s->arcs);
   s->columns = c;
   if (c < SIZE_MAX / 64 / size)
-    s->block = calloc(size * (2 * c + 3) + 2 * (c + 2) + 5 * size, sizeof *s->block);
+    s->block = calloc(size * (2 * c + 3) + 2 * (c + 2) + 5 * size + s->arcs.unknowns, sizeof *s->block);
   if (!s->block)
     return ric_fail(error, RIC_ENOMEM, "no memory for the tangent vectors of %zu numbers", size);
   double *store = s->block;
@@ -50,6 +50,7 @@ static ric_status allocate(ric_shooting *s, ric_error *error) {
   s->gradient = take(&store, size);
   s->phase_at = take(&store, size);
   s->phase_along = take(&store, size);
+  s->residual = take(&store, s->arcs.unknowns);
   return RIC_OK;
 }
 
@@ -87,7 +88,6 @@ void ric_shooting_destroy(ric_shooting **shooting) {
   ric_shooting *s = *shooting;
   shooting_gaps_destroy(&s->gaps);
   shooting_spectrum_destroy(&s->spectrum);
-  free(s->residual);
   tangent_jump_clear(&s->jump);
   impact_solver_clear(&s->law);
   arc_runner_clear(&s->runner);

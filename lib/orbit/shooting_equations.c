@@ -163,10 +163,10 @@ static ric_status run_piece(const equations *e, size_t k, ric_error *error) {
   if (!(fabs(periods) <= longest_arc))
     return ric_fail(error, RIC_ENUMERIC, "an arc from t = %g to %g, expected at most %g periods of %g", run.begin,
                     run.end, longest_arc, e->period);
-  if (o)
+  if (o && o->begins)
     o->begins(&run, o->user);
   RIC_TRY(shooting_move(e->s, &run, o ? &watch : NULL, error));
-  if (o)
+  if (o && o->ends)
     o->ends(&run, e->s->x, o->user);
   return end_piece(e, &run, error);
 }

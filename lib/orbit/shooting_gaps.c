@@ -27,6 +27,8 @@ static ric_status build(shooting_gaps *g, ric_shooting *s, ric_error *error) {
     if (s->arcs.at_half[i] != NO_UNKNOWN)
       g->hit[s->arcs.at_half[i]] = true;
   }
+  for (size_t j = 0; j < count; j++)
+    g->any_free = g->any_free || !g->hit[j];
   return RIC_OK;
 }
 
@@ -107,12 +109,18 @@ static void look_at_free(const gap_view *v) {
     look_for_violation(v);
 }
 
+/* The slope at 0 and at 1. */
+static void ends_of_slope(const gap_part *part, double *first, double *last) {
+  *first = *last = part->degree > 0 ? part->c[1] : 0;
+  for (int j = 2; j <= part->degree; j++)
+    *last += j * part->c[j];
+}
+
 /* Local minima inside the part, and one that lies between the last part and this; slopes are those forwards in time. */
 static void look_at_own(const gap_view *v) {
   double y, value, slope, slope_end, *last = &v->g->slope[v->obstacle], sense = copysign(1, v->piece->length);
   gap_found *best = &v->g->own;
-  ric_poly_value(v->part->c, v->part->degree, 0, &slope);
-  ric_poly_value(v->part->c, v->part->degree, 1, &slope_end);
+  ends_of_slope(v->part, &slope, &slope_end);
   if (*last < 0 && sense * slope > 0)
     keep_smaller(best, v->part->c[0], time_at(v, 0), v->obstacle);
   while (ric_poly_first_minimum(v->part->c, v->part->degree, best->value - minimum_tol, &y, &value))
@@ -154,15 +162,15 @@ static void look_at_part(shooting_gaps *g, const ric_segment *piece, size_t obst
 /* Obstacles at the coordinates of a segment, most of which bounds exclude. */
 static void look_at_coordinates(shooting_gaps *g, const ric_segment *piece, double end) {
   const ric_system *system = g->s->system;
-  ric_segment_bounds(piece, g->lower, g->upper);
+  if (g->any_free)
+    ric_segment_bounds(piece, g->lower, g->upper);
   for (size_t k = system_first_obstacle(system, piece->first); k < system->obstacle_count; k++) {
     size_t j = system->by_coordinate[k];
     const ric_obstacle *o = &system->obstacles[j];
     size_t i = o->coordinate - piece->first;
     if (i >= piece->coordinates)
       break;
-    double least = obstacle_least_gap(o, g->lower[i], g->upper[i]);
-    if (o->stiffness == INFINITY && (g->hit[j] || least < g->free.value))
+    if (o->stiffness == INFINITY && (g->hit[j] || obstacle_least_gap(o, g->lower[i], g->upper[i]) < g->free.value))
       look_at_part(g, piece, j, 0, end, INFINITY, 0);
   }
 }

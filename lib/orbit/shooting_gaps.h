@@ -21,6 +21,7 @@ typedef struct shooting_gaps {
   gap_reader reader;
   bool *hit;             /* [obstacles] in the motion at all */
   double *slope;         /* [obstacles] of the gap at the end of the last segment; NaN after an impact */
+  bool any_free;         /* obstacles that it does not hit */
   double *lower, *upper; /* [n] bounds of coordinates */
   double zero;           /* gaps below -zero are violations */
   gap_found free, own;   /* smallest of obstacles that are not hit, and that are */

@@ -183,14 +183,6 @@ static void keep_clearance(const look *l) {
   o->clearance_particle = any ? (long long)(obstacles ? obstacles[g->obstacle].coordinate : g->obstacle) : -1;
 }
 
-static ric_status reserve(ric_shooting *s, ric_error *error) {
-  if (!s->residual)
-    s->residual = malloc(s->arcs.unknowns * sizeof *s->residual);
-  if (!s->residual)
-    return ric_fail(error, RIC_ENOMEM, "no memory for a residual of %zu numbers", s->arcs.unknowns);
-  return s->gaps ? RIC_OK : shooting_gaps_create(s, &s->gaps, error);
-}
-
 static ric_status follow(look *l, double given, ric_error *error) {
   ric_shooting *s = l->s;
   const shooting_observer observer = {.begins = begins, .segment = segment, .ends = ends, .user = l};
@@ -235,7 +227,8 @@ static ric_status look_for_failure(look *l, ric_error *error) {
 ric_status ric_shooting_orbit(ric_shooting *s, const double *z, double given, ric_orbit *orbit, ric_error *error) {
   look l = {.s = s, .z = z, .orbit = orbit, .error = error};
   RIC_TRY(check_room(s, orbit, error));
-  RIC_TRY(reserve(s, error));
+  if (!s->gaps)
+    RIC_TRY(shooting_gaps_create(s, &s->gaps, error));
   RIC_TRY(shooting_period(s, z, given, &l.period, error));
   RIC_TRY(follow(&l, given, error));
   orbit->period = l.period;

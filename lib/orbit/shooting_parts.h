@@ -26,9 +26,9 @@ struct ric_shooting {
   double *gradient; /* [n + m] of the energy at the first state */
   double *phase_at; /* [n + m] the phase condition: <phase_along, x - phase_at> = 0 */
   double *phase_along;
+  double *residual;                   /* [unknowns] of a solution that is looked at */
   double *block;                      /* behind all of them */
   struct shooting_gaps *gaps;         /* NULL until an orbit is asked for */
-  double *residual;                   /* [unknowns] with it */
   struct shooting_spectrum *spectrum; /* NULL until multipliers are asked for */
 };
 
@@ -62,7 +62,7 @@ ric_status shooting_hit(ric_shooting *s, const piece_run *run, ric_error *error)
 /** Energy of a first state x [n + m], and its gradient in s->gradient; x is moved, and put back. */
 ric_status shooting_energy(ric_shooting *s, double *x, double *energy, ric_error *error);
 
-/** Sees the pieces of a motion while the equations are evaluated. */
+/** Sees the pieces of a motion while the equations are evaluated; `begins` and `ends` may be NULL. */
 typedef struct shooting_observer {
   void (*begins)(const piece_run *run, void *user);
   void (*segment)(const ric_segment *piece, double end, void *user);

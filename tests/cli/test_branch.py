@@ -260,6 +260,7 @@ def an_oscillator_at_resonance_grazes_where_its_amplitude_says(ricochet, folder)
     outcome = np.array(found["point_outcome"])
     assert set(outcome[first & below]) == {"admissible"} and set(outcome[first & ~below]) == {"inadmissible"}
     assert np.allclose(found["point_clearance"][first], 1 - 10 * found["point_parameter"][first], atol=1e-9)
+    assert np.allclose(found["point_amplitude"][first], 10 * found["point_parameter"][first], rtol=1e-9)  # at T/4
     assert found["segment_origin"] == ["start", "grazing"] and found["segment_special"].tolist() == [-1, grazing]
     assert found["segment_impacts"].tolist() == [0, 1] and found["segment_outcome"] == ["bound", "bound"]
     impacts = outcome[~first & (found["point_parameter"] > 0.101)]

@@ -1,5 +1,4 @@
-/* Special points of families of chains against what is known of them otherwise, kinds that need a motion of their own,
- * and refusals. */
+/* Special points of families of chains against what is known of them otherwise. */
 #include "support.h"
 
 #include "recorded.h"

@@ -31,6 +31,64 @@ static void even_motions_that_turn_beyond_what_they_hit_elsewhere_are_inadmissib
   }
 }
 
+/* A particle over two floors, one 0.2 under the other: who hits the lower one has gone through the upper one. */
+static ric_system *two_floors(void) {
+  static const ric_obstacle floors[2] = {{0, +1, -1, 1, INFINITY}, {0, +1, -1.2, 1, INFINITY}};
+  const ric_lattice lattice = ric_lattice_default(1, RIC_ENDS_FREE);
+  return lattice_system(&lattice, floors, 2);
+}
+
+static void assert_goes_through_the_upper_floor(shot *s, double time) {
+  char word[64];
+  snprintf(word, sizeof word, "obstacle 0 is passed at t = %.4g", time);
+  shot_solve(s);
+  assert_int_equal(s->orbit.outcome, RIC_INADMISSIBLE);
+  if (!strstr(s->orbit.reason, "the smallest gap is -0.2") || !strstr(s->orbit.reason, word))
+    fail_msg("\"%s\" does not say \"%s\"", s->orbit.reason, word);
+  shot_clear(s);
+}
+
+/* At 0 or T/2 of an even motion, the upper floor hit at the other end, or in between. */
+static void even_motions_thrown_back_beyond_what_they_hit_elsewhere_are_inadmissible(void **state) {
+  (void)state;
+  static const size_t upper = 0, lower = 1;
+  const double q = 0, u = 1.6, time = 4.3; /* 2 cos(t - 2.2) */
+  for (int low_first = 0; low_first < 2; low_first++) {
+    const ric_shooting_problem ends = {.kind = RIC_MOTION_EVEN,
+                                       .at_start = low_first ? &lower : &upper,
+                                       .start_count = 1,
+                                       .at_half = low_first ? &upper : &lower,
+                                       .half_count = 1,
+                                       .flow = ric_flow_options_default()};
+    shot s = shot_at(two_floors(), &ends);
+    shot_guess(&s, &q, &u, NULL, 9);
+    assert_goes_through_the_upper_floor(&s, low_first ? 0 : 4.5);
+  }
+  const ric_shooting_problem between = {.kind = RIC_MOTION_EVEN,
+                                        .at_start = &lower,
+                                        .start_count = 1,
+                                        .sequence = &upper,
+                                        .count = 1,
+                                        .flow = ric_flow_options_default()};
+  shot s = shot_at(two_floors(), &between);
+  shot_guess(&s, &q, &u, &time, 2 * 6.4);
+  assert_goes_through_the_upper_floor(&s, 0);
+}
+
+/* In the sequence of a motion that is not even, wherever it begins. */
+static void motions_thrown_back_beyond_what_they_hit_elsewhere_are_inadmissible(void **state) {
+  (void)state;
+  static const size_t hits[3] = {0, 1, 0};
+  for (int low_first = 0; low_first < 2; low_first++) {
+    const ric_shooting_problem problem = {
+        .kind = RIC_MOTION_CONSERVATIVE, .sequence = hits + low_first, .count = 2, .flow = ric_flow_options_default()};
+    const double q = low_first ? -1.2 : -1, u = 1.2, times[2] = {0, 4.5};
+    shot s = shot_at(two_floors(), &problem);
+    shot_guess(&s, &q, &u, times, 9);
+    assert_goes_through_the_upper_floor(&s, low_first ? 0 : 4.5);
+  }
+}
+
 /* Two masses that share inertia: an impact of one turns the gap of the other around. */
 static shot shared_inertia(bool turned) {
   static const double mass[4] = {1, 0.5, 0.5, 1}, stiffness[4] = {2, 0, 0, 1};
@@ -100,12 +158,48 @@ static void impacts_of_one_time_are_in_order(void **state) {
   shot_clear(&s);
 }
 
+/* Of A cos(w t) on two masses that do not feel each other, and of a particle that is thrown up from a floor. */
+static void amplitudes_are_those_of_the_whole_period(void **state) {
+  (void)state;
+  static const double force[2] = {0.3, -0.1}, off[2] = {0, 0};
+  static const size_t floor = 0;
+  const ric_obstacle obstacle = ric_obstacle_floor(0, -1);
+  ric_lattice lattice = ric_lattice_default(2, RIC_ENDS_FREE);
+  const double w = 1.3, q[2] = {0}, u[2] = {0.1, 2}, lag = 1 - w * w, drag = 0.2 * w;
+  double amplitude;
+  lattice.on_site.damping = 0.2;
+  lattice.force_cos = force;
+  lattice.force_sin = off;
+  lattice.frequency = w;
+  const ric_shooting_problem forced = {.kind = RIC_MOTION_FORCED, .flow = ric_flow_options_default()};
+  shot s = shot_at(lattice_system(&lattice, NULL, 0), &forced);
+  shot_guess(&s, q, u, NULL, turn / w);
+  shot_solve(&s);
+  assert_int_equal(ric_shooting_amplitude(s.shooting, s.z, s.given, &amplitude, NULL), RIC_OK);
+  assert_close(amplitude, 0.3 / hypot(lag, drag), 1e-13);
+  shot_clear(&s);
+  lattice = ric_lattice_default(1, RIC_ENDS_FREE);
+  const ric_shooting_problem even = {
+      .kind = RIC_MOTION_EVEN, .at_half = &floor, .half_count = 1, .flow = ric_flow_options_default()};
+  for (double period = 3.3; period < 6.2; period += 0.7) { /* -cos(t - T/2) / cos(T/2), about t = T/2 of this motion */
+    s = shot_at(lattice_system(&lattice, &obstacle, 1), &even);
+    shot_guess(&s, q, u, NULL, period);
+    shot_solve(&s);
+    assert_int_equal(ric_shooting_amplitude(s.shooting, s.z, s.given, &amplitude, NULL), RIC_OK);
+    assert_close(amplitude, -1 / cos(period / 2), 1e-12 * amplitude);
+    shot_clear(&s);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(even_motions_that_turn_beyond_what_they_hit_elsewhere_are_inadmissible),
+      cmocka_unit_test(even_motions_thrown_back_beyond_what_they_hit_elsewhere_are_inadmissible),
+      cmocka_unit_test(motions_thrown_back_beyond_what_they_hit_elsewhere_are_inadmissible),
       cmocka_unit_test(verdicts_do_not_depend_on_where_the_motion_is_begun),
       cmocka_unit_test(states_at_half_the_period_are_those_before_an_impact_there),
       cmocka_unit_test(impacts_of_one_time_are_in_order),
+      cmocka_unit_test(amplitudes_are_those_of_the_whole_period),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

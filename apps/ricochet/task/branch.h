@@ -38,12 +38,13 @@ enum { BRANCH_REASON_BYTES = 256 };
 void branch_lay_out(const study_values *v, const char *followed, const char *traced, kind_plan *plan);
 
 /** Writes a point of a segment, or a special one, into its record.
- *  @param value  of the parameter */
-void branch_put_point(const table *t, const ric_family_point *point, double value, size_t segment,
+ *  @param value  of the parameter
+ *  @param amplitude  ric_shooting_amplitude */
+void branch_put_point(const table *t, const ric_family_point *point, double value, double amplitude, size_t segment,
                       unsigned char *record);
 /** @param before  number of points of the task up to it; @param particle  that it concerns, -1 for none */
-void branch_put_special(const table *t, const ric_family_point *point, double value, size_t segment, uint64_t before,
-                        long long particle, unsigned char *record);
+void branch_put_special(const table *t, const ric_family_point *point, double value, double amplitude, size_t segment,
+                        uint64_t before, long long particle, unsigned char *record);
 
 /** Writes a point of a curve into its record.
  *  @param special  special point of the task that the curve goes through

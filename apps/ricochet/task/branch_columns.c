@@ -58,7 +58,7 @@ static const column point_columns[] = {
      .source = "[JAP] (9)"},
     {.name = "point_energy", NUMBER, .long_name = "energy, of motions with losses at their first state", CURVE},
     {.name = "point_period", NUMBER, .long_name = "period", CURVE},
-    {.name = "point_amplitude", NUMBER, .long_name = "largest displacement at t = 0+ and at T/2", CURVE},
+    {.name = "point_amplitude", NUMBER, .long_name = "largest displacement over the period", CURVE},
     {.name = "point_multiplier_max",
      NUMBER,
      .long_name = "largest modulus of a Floquet multiplier",
@@ -98,7 +98,7 @@ static const column special_columns[] = {
     {.name = "special_order", INTEGER, .long_name = "3 or 4 of a resonance, else 0", CURVE},
     {.name = "special_period", NUMBER, .long_name = "period", CURVE},
     {.name = "special_energy", NUMBER, .long_name = "energy, of motions with losses at their first state", CURVE},
-    {.name = "special_amplitude", NUMBER, .long_name = "largest displacement at t = 0+ and at T/2", CURVE},
+    {.name = "special_amplitude", NUMBER, .long_name = "largest displacement over the period", CURVE},
     {.name = "special_clearance",
      NUMBER,
      .long_name = "smallest gap of a rigid obstacle away from its impacts",
@@ -231,14 +231,6 @@ void branch_lay_out(const study_values *v, const char *followed, const char *tra
     lay_out_curves(followed, traced, plan);
 }
 
-/* Of all particles at the two times that the orbit keeps. */
-static double amplitude(const ric_orbit *o) {
-  double most = 0;
-  for (size_t i = 0; i < o->particles; i++)
-    most = fmax(most, fmax(fabs(o->q[i]), fabs(o->q_half[i])));
-  return most;
-}
-
 static void put_multipliers(const ric_multipliers *found, const column *c, unsigned char *record) {
   double *parts = row_numbers(record, c);
   for (size_t i = 0; parts && i < column_values(c); i++) {
@@ -248,7 +240,7 @@ static void put_multipliers(const ric_multipliers *found, const column *c, unsig
   }
 }
 
-void branch_put_point(const table *t, const ric_family_point *point, double value, size_t segment,
+void branch_put_point(const table *t, const ric_family_point *point, double value, double amplitude, size_t segment,
                       unsigned char *record) {
   const ric_orbit *o = point->orbit;
   const ric_multipliers *m = point->multipliers;
@@ -257,7 +249,7 @@ void branch_put_point(const table *t, const ric_family_point *point, double valu
   row_put_word(record, table_column(t, "point_outcome"), (int)o->outcome);
   row_put_number(record, table_column(t, "point_energy"), o->energy);
   row_put_number(record, table_column(t, "point_period"), o->period);
-  row_put_number(record, table_column(t, "point_amplitude"), amplitude(o));
+  row_put_number(record, table_column(t, "point_amplitude"), amplitude);
   row_put_number(record, table_column(t, "point_multiplier_max"), m ? m->largest : NAN);
   row_put_word(record, table_column(t, "point_stable"), m ? (int)m->stable : (int)RIC_STABILITY_UNKNOWN);
   row_put_number(record, table_column(t, "point_clearance"), o->clearance);
@@ -269,8 +261,8 @@ void branch_put_point(const table *t, const ric_family_point *point, double valu
   put_multipliers(m, table_column(t, "point_multipliers"), record);
 }
 
-void branch_put_special(const table *t, const ric_family_point *point, double value, size_t segment, uint64_t before,
-                        long long particle, unsigned char *record) {
+void branch_put_special(const table *t, const ric_family_point *point, double value, double amplitude, size_t segment,
+                        uint64_t before, long long particle, unsigned char *record) {
   const ric_orbit *o = point->orbit;
   const bool any = particle >= 0;
   row_put_word(record, table_column(t, "special_kind"), (int)point->kind);
@@ -283,7 +275,7 @@ void branch_put_special(const table *t, const ric_family_point *point, double va
   row_put_integer(record, table_column(t, "special_order"), point->order);
   row_put_number(record, table_column(t, "special_period"), o->period);
   row_put_number(record, table_column(t, "special_energy"), o->energy);
-  row_put_number(record, table_column(t, "special_amplitude"), amplitude(o));
+  row_put_number(record, table_column(t, "special_amplitude"), amplitude);
   row_put_number(record, table_column(t, "special_clearance"), o->clearance);
   row_put_number(record, table_column(t, "special_multiplier_max"),
                  point->multipliers ? point->multipliers->largest : NAN);

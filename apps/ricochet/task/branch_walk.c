@@ -73,12 +73,22 @@ static void add_impacts(walk *w, const ric_orbit *o, long long at, long long spe
   }
 }
 
+/* Largest displacement; NaN, and the walk may end, when the motion cannot be run once more. */
+static double amplitude(walk *w, const ric_family_point *point) {
+  double most = NAN;
+  ric_shooting *shooting = ric_family_shooting(w->segments[w->current].family);
+  const ric_status status = ric_shooting_amplitude(shooting, point->z, point->given, &most, NULL);
+  if (status == RIC_ESTOPPED || status == RIC_ENOMEM)
+    w->status = status;
+  return status == RIC_OK ? most : NAN;
+}
+
 static void add_point(walk *w, const ric_family_point *point) {
   unsigned char *record = add_record(w, BRANCH_POINTS);
   if (!record)
     return;
   branch_put_point(&w->plan->tails[BRANCH_POINTS].records, point, branch_family_value(w->b, point->parameter),
-                   w->current, record);
+                   amplitude(w, point), w->current, record);
   if (w->states)
     add_impacts(w, point->orbit, (long long)w->points, -1);
   w->points++;
@@ -90,8 +100,8 @@ static void add_special(walk *w, const ric_family_point *point) {
   if (!record)
     return;
   branch_put_special(&w->plan->tails[BRANCH_SPECIAL].records, point, branch_family_value(w->b, point->parameter),
-                     w->current, w->points, any ? (long long)w->b->model.obstacles[point->obstacle].coordinate : -1,
-                     record);
+                     amplitude(w, point), w->current, w->points,
+                     any ? (long long)w->b->model.obstacles[point->obstacle].coordinate : -1, record);
   add_impacts(w, point->orbit, -1, (long long)w->specials);
   w->specials++;
 }

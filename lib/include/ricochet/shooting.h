@@ -16,7 +16,8 @@
  *   autonomous    without forcing, with an unknown period: isolated motions of self-excited systems.
  *   conservative  without forcing or losses: motions come in families, the period or the energy is given. Conservation
  *                 makes one equation redundant: one unknown lambda, times the gradient of the energy, is added to the
- *                 closing equation. It is zero at every solution and makes the Jacobian regular.
+ *                 closing equation. It makes the Jacobian regular, and is zero at every motion; solutions where it is
+ *                 not close nothing.
  *
  * Unknowns z, in this order: states at the beginnings of arcs (each cut into `pieces`); times of impacts; the period,
  * where it is not given; lambda. The first state of even motions has one number per coordinate: q_i, or u_i for
@@ -84,7 +85,8 @@ RIC_API ric_status ric_shooting_guess(ric_shooting *shooting, const double *q, c
 
 /** F [unknowns] at z, its Jacobian J [unknowns][unknowns] row-major and its derivative by the given number.
  *  @param given  the period T > 0; the energy where that is given; without meaning for autonomous motions
- *  @param J, F_given  may be NULL, both
+ *  @param J, F_given  may be NULL, both. J leaves out lambda times the second derivative of the energy: nothing where
+ *                     lambda is zero, as it is at every motion
  *  @returns RIC_ENUMERIC where there is no value: the motion blows up, impacts out of order in a system with compliant
  *           obstacles, a period that is not positive; RIC_ECALLBACK, RIC_ESTOPPED. */
 RIC_API ric_status ric_shooting_residual(ric_shooting *shooting, const double *z, double given, double *F, double *J,
@@ -94,8 +96,8 @@ RIC_API ric_status ric_shooting_residual(ric_shooting *shooting, const double *z
  *  @param z  [unknowns] guess; set to the solution
  *  @param tolerance  of the largest residual, relative to 1 + the largest unknown; 0: 1e-13
  *  @param iterations  set to the number of Newton's steps (one for linear problems); may be NULL
- *  @returns RIC_ENUMERIC when it does not converge, with the residual left, and what ric_shooting_residual returns; z
- * is then where it got. */
+ *  @returns RIC_ENUMERIC when it does not converge, with the residual left, or converges to no motion (lambda is not
+ *           zero), and what ric_shooting_residual returns; z is then where it got. */
 RIC_API ric_status ric_shooting_solve(ric_shooting *shooting, double *z, double given, double tolerance,
                                       int *iterations, ric_error *error);
 
@@ -103,14 +105,22 @@ RIC_API ric_status ric_shooting_solve(ric_shooting *shooting, double *z, double 
  *  over the segments of its arcs, certified there.
  *
  *  `admissible`: all impulses positive, impacts in order, all gaps positive in between; `inadmissible` with what is
- * violated first; `grazing` where an impulse or a gap is zero within grazing_tol. Gaps of obstacles that are hit count
- * at their minima between the impacts. The clearance is the smallest gap of the rigid obstacles that are not hit at
- * all; NaN if there are none. The state (q, v) is the first one: at t = 0+, of forced motions with impacts just after
- * the one that is listed last; (q_half, v_half) is half a period later, before an impact there.
+ * violated first; `grazing` where an impulse or a gap is zero within grazing_tol; `failed` where the equations do not
+ * hold, or hold for no motion: the system has not the symmetry that the kind takes for granted (even: it runs backwards
+ * as it runs forwards; forced: time repeats after the period; the others: time does not matter), or lambda is not zero.
+ * Gaps of obstacles that are hit count at their minima between the impacts. The clearance is the smallest gap of the
+ * rigid obstacles that are not hit at all; NaN if there are none. The state (q, v) is the first one: at t = 0+, of
+ * forced motions with impacts just after the one that is listed last; (q_half, v_half) is half a period later, before
+ * an impact there.
  *  @param orbit  initialised for the system's coordinates and ric_shooting_impacts
  *  @returns as ric_shooting_residual. */
 RIC_API ric_status ric_shooting_orbit(ric_shooting *shooting, const double *z, double given, ric_orbit *orbit,
                                       ric_error *error);
+
+/** Largest displacement of a solution: of any coordinate, at any time of the period.
+ *  @returns as ric_shooting_residual. */
+RIC_API ric_status ric_shooting_amplitude(ric_shooting *shooting, const double *z, double given, double *amplitude,
+                                          ric_error *error);
 
 /** Multipliers of a solution, also of one that is not admissible, from the tangent vectors of its arcs. Of even motions
  * by the n x n block (M + M^-1) / 2, as orbit_multipliers.h says.
