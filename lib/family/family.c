@@ -22,12 +22,12 @@ const char *ric_family_kind_name(ric_family_kind kind) {
 ric_family_options ric_family_options_default(void) {
   ric_family_options options = {
       .curve = ric_curve_options_default(), .multipliers = true, .judge = ric_multiplier_options_default()};
-  options.curve.newton_tol = 1e-11;
+  options.curve.newton_tol = 1e-12;
   return options;
 }
 
 void family_forget(ric_family *f) {
-  f->at[0] = f->at[1] = f->looked_at = NAN;
+  f->at[0] = f->at[1] = f->seen_at[0] = f->seen_at[1] = NAN;
 }
 
 /* --- parameters --------------------------------------------------------------------------------------------------- */
@@ -36,7 +36,7 @@ ric_status family_set(ric_family *f, double first, double second, ric_error *err
   const ric_family_problem *p = &f->problem;
   if (f->at[0] == first && f->at[1] == second)
     return RIC_OK;
-  family_forget(f);
+  f->at[0] = f->at[1] = NAN;
   const double both[2] = {first, second};
   f->given = p->set ? p->given : first;
   if (p->set)
@@ -97,10 +97,13 @@ ric_status family_residual(ric_family *f, const double *z, size_t by, double *F,
   return exact ? RIC_OK : difference(f, z, by, F, F_p, error);
 }
 
+/* Points of the curve are ones at which it was evaluated: the same run looks at the motion. */
 static ric_status residual(const double *u, double p, double *F, double *J, double *F_p, void *user, ric_error *error) {
   ric_family *f = user;
+  bool exact = !f->problem.set;
   RIC_TRY(family_set(f, p, f->problem.second, error));
-  return family_residual(f, u, 0, F, J, F_p, error);
+  RIC_TRY(family_see(f, u, F, J, exact ? F_p : NULL, error));
+  return exact ? RIC_OK : difference(f, u, 0, F, F_p, error);
 }
 
 static ric_status test(const double *u, double p, const double *t_u, double t_p, double *values, void *user,
@@ -150,7 +153,7 @@ static ric_status allocate(ric_family *f, ric_error *error) {
     return ric_fail(error, RIC_ENOMEM, "no memory for a family of %zu unknowns", n);
   f->below = f->block;
   f->above = f->block + n;
-  f->looked_z = f->block + 2 * n;
+  f->seen_z = f->block + 2 * n;
   RIC_TRY(ric_orbit_init_for(&f->orbit, f->problem.system, ric_shooting_impacts(f->shooting), error));
   if (!f->options.multipliers)
     return RIC_OK;

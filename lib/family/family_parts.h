@@ -3,6 +3,7 @@
 #define RICOCHET_FAMILY_PARTS_H
 
 #include "orbit/shooting_gaps.h"
+#include "orbit/shooting_look.h"
 #include "orbit/shooting_spectrum.h"
 #include "ricochet/family.h"
 
@@ -32,7 +33,8 @@ struct ric_family {
   double *below, *above;           /* [unknowns] residuals beside a point */
   ric_orbit orbit;                 /* of the point looked at last, and what else is known of it: */
   ric_multipliers multipliers;
-  double *looked_z, looked_at; /* [unknowns] which point that is; NaN: none */
+  double *seen_z, seen_at[2]; /* [unknowns] the point at which a run has looked, and parameters; NaN: none */
+  bool judged;                /* orbit and multipliers are complete, too */
   double *block;
 };
 
@@ -58,7 +60,11 @@ ric_status family_branch(const ric_family_problem *problem, const ric_family *fr
 ric_status family_residual(ric_family *f, const double *z, size_t by, double *F, double *J, double *F_p,
                            ric_error *error);
 
-/** Looks at a motion: orbit, gaps, multipliers. Nothing when it was the last one. */
+/** Runs along a motion and sees its orbit, its gaps and the matrix of its multipliers.
+ *  @param F, J, F_given  by the same run, as ric_shooting_residual; may be NULL */
+ric_status family_see(ric_family *f, const double *z, double *F, double *J, double *F_given, ric_error *error);
+
+/** Looks at a motion: orbit, verdict, multipliers. No run when it was seen last, nothing when it was looked at. */
 ric_status family_look(ric_family *f, const double *z, ric_error *error);
 
 /** Test functions [tests] of the motion that was looked at. */

@@ -13,15 +13,47 @@ static const double coincidence = 1e-11;
 
 /* --- the motion --------------------------------------------------------------------------------------------------- */
 
+static void mark_seen(ric_family *f, const double *z) {
+  memcpy(f->seen_z, z, f->unknowns * sizeof *z);
+  f->seen_at[0] = f->at[0];
+  f->seen_at[1] = f->at[1];
+}
+
+ric_status family_see(ric_family *f, const double *z, double *F, double *J, double *F_given, ric_error *error) {
+  const int what = LOOK_ORBIT | (f->options.multipliers ? LOOK_SPECTRUM : 0);
+  f->seen_at[0] = NAN;
+  f->judged = false;
+  RIC_TRY(shooting_look(f->shooting, z, f->given, what, F, J, F_given, &f->orbit, error));
+  mark_seen(f, z);
+  return RIC_OK;
+}
+
+static bool is_near(double a, double b, double tolerance) {
+  return fabs(a - b) <= tolerance * (1 + fabs(a));
+}
+
+/* Whether the last run was along this motion, or, with a tolerance, along one that was corrected to it by no more: what
+ * it has seen is as exact as points are. */
+static bool was_seen(const ric_family *f, const double *z, double tolerance) {
+  double square = 0, size = 0;
+  for (size_t i = 0; i < f->unknowns; i++) {
+    square += (z[i] - f->seen_z[i]) * (z[i] - f->seen_z[i]);
+    size = fmax(size, fabs(z[i]));
+  }
+  return is_near(f->at[0], f->seen_at[0], tolerance) && is_near(f->at[1], f->seen_at[1], 0) &&
+         sqrt(square / (double)f->unknowns) <= tolerance * (1 + size);
+}
+
 ric_status family_look(ric_family *f, const double *z, ric_error *error) {
-  if (f->looked_at == f->at[0] && memcmp(f->looked_z, z, f->unknowns * sizeof *z) == 0)
+  if (f->judged && was_seen(f, z, 0))
     return RIC_OK;
-  f->looked_at = NAN;
-  RIC_TRY(ric_shooting_orbit(f->shooting, z, f->given, &f->orbit, error));
+  if (f->judged || !was_seen(f, z, f->options.curve.newton_tol))
+    RIC_TRY(family_see(f, z, NULL, NULL, NULL, error));
+  RIC_TRY(shooting_judge(f->shooting, z, f->given, &f->orbit, error));
   if (f->options.multipliers)
-    RIC_TRY(ric_shooting_multipliers(f->shooting, z, f->given, &f->options.judge, &f->multipliers, error));
-  memcpy(f->looked_z, z, f->unknowns * sizeof *z);
-  f->looked_at = f->at[0];
+    RIC_TRY(shooting_multipliers(f->shooting, &f->options.judge, &f->multipliers, error));
+  mark_seen(f, z);
+  f->judged = true;
   return RIC_OK;
 }
 

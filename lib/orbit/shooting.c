@@ -37,7 +37,8 @@ static ric_status allocate(ric_shooting *s, ric_error *error) {
   size_t size = s->arcs.size, c = s->arcs.count > 1 ? size : arcs_first_numbers(&s->arcs);
   s->columns = c;
   if (c < SIZE_MAX / 64 / size)
-    s->block = calloc(size * (2 * c + 3) + 2 * (c + 2) + 5 * size + s->arcs.unknowns, sizeof *s->block);
+    s->block =
+        calloc(size * (2 * c + 3) + 2 * (c + 2) + 5 * size + 2 * s->arcs.speeds + s->arcs.unknowns, sizeof *s->block);
   if (!s->block)
     return ric_fail(error, RIC_ENOMEM, "no memory for the tangent vectors of %zu numbers", size);
   double *store = s->block;
@@ -50,6 +51,7 @@ static ric_status allocate(ric_shooting *s, ric_error *error) {
   s->gradient = take(&store, size);
   s->phase_at = take(&store, size);
   s->phase_along = take(&store, size);
+  s->contact = take(&store, 2 * s->arcs.speeds);
   s->residual = take(&store, s->arcs.unknowns);
   return RIC_OK;
 }
@@ -190,7 +192,7 @@ ric_status ric_shooting_guess(ric_shooting *s, const double *q, const double *u,
   guess_numbers(s, q, u, times, period, z);
   RIC_TRY(set_phase(s, z, error));
   for (size_t k = 0; k + 1 < s->arcs.count; k++) {
-    piece_run run = shooting_begin(s, k, z, period, false);
+    piece_run run = shooting_begin(s, k, z, period, WISH_STATE);
     RIC_TRY(shooting_move(s, &run, NULL, error));
     if (run.piece->how == PIECE_IMPACT)
       RIC_TRY(shooting_hit(s, &run, error));

@@ -113,7 +113,7 @@ static ric_status hold_energy(const equations *e, double given, ric_error *error
   double energy;
   if (a->energy_row == NO_UNKNOWN && a->lambda == NO_UNKNOWN)
     return RIC_OK;
-  (void)shooting_begin(s, 0, e->z, e->period, false);
+  (void)shooting_begin(s, 0, e->z, e->period, WISH_STATE);
   RIC_TRY(shooting_energy(s, s->x, &energy, error));
   if (a->energy_row == NO_UNKNOWN)
     return RIC_OK;
@@ -155,19 +155,25 @@ static int show_segment(const ric_segment *piece, double end, void *user) {
   return 0;
 }
 
+static piece_wish wish_of(const equations *e) {
+  if (e->observer && e->observer->whole)
+    return WISH_WHOLE;
+  return wants_derivatives(e) ? WISH_DERIVATIVES : WISH_STATE;
+}
+
 static ric_status run_piece(const equations *e, size_t k, ric_error *error) {
   const shooting_observer *o = e->observer;
   const arc_watch watch = {.segment = show_segment, .user = (void *)(uintptr_t)o};
-  piece_run run = shooting_begin(e->s, k, e->z, e->period, wants_derivatives(e));
+  piece_run run = shooting_begin(e->s, k, e->z, e->period, wish_of(e));
   double periods = (run.end - run.begin) / e->period;
   if (!(fabs(periods) <= longest_arc))
     return ric_fail(error, RIC_ENUMERIC, "an arc from t = %g to %g, expected at most %g periods of %g", run.begin,
                     run.end, longest_arc, e->period);
   if (o && o->begins)
-    o->begins(&run, o->user);
-  RIC_TRY(shooting_move(e->s, &run, o ? &watch : NULL, error));
+    RIC_TRY(o->begins(&run, o->user, error));
+  RIC_TRY(shooting_move(e->s, &run, o && o->segment ? &watch : NULL, error));
   if (o && o->ends)
-    o->ends(&run, e->s->x, o->user);
+    RIC_TRY(o->ends(&run, o->user, error));
   return end_piece(e, &run, error);
 }
 

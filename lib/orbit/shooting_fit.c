@@ -15,7 +15,7 @@ static bool is_even(const ric_shooting *s) {
 /* The first state, with speeds that no damper leaves alone, in s->x. */
 static void set_state(ric_shooting *s, const double *z, double period) {
   size_t n = s->arcs.coordinates;
-  (void)shooting_begin(s, 0, z, period, false);
+  (void)shooting_begin(s, 0, z, period, WISH_STATE);
   for (size_t i = 0; i < s->arcs.speeds; i++)
     s->x[n + i] += cos((double)(i + 1));
 }

@@ -28,7 +28,7 @@ static ric_status build(shooting_gaps *g, ric_shooting *s, ric_error *error) {
       g->hit[s->arcs.at_half[i]] = true;
   }
   for (size_t j = 0; j < count; j++)
-    g->any_free = g->any_free || !g->hit[j];
+    g->any_free = g->any_free || (!g->hit[j] && !system_complies(s->system, j));
   return RIC_OK;
 }
 

@@ -14,11 +14,13 @@ struct ric_shooting {
   tangent_jump jump;
   bool forced; /* time enters the motion */
   double grazing_tol;
+  bool out_of_order; /* impacts of the motion looked at last */
   ric_poll poll;
   size_t columns;   /* most numbers of a first state, c */
   double *x;        /* [n + m] state along a piece */
   double *rates;    /* [n + m] */
-  double *carried;  /* [n + m][c + 1] tangent vectors along a piece */
+  double *contact;  /* [2][m] direction of a contact and what it moves */
+  double *carried;  /* [n + m][c + 1] tangent vectors along a piece; shooting_spectrum.h has room for more */
   double *ends;     /* [n + m][c + 2] derivatives of the end of a piece: by the numbers of its first state, and by the
                        times at which its arc begins and ends */
   double *gap_row;  /* [c + 2] the same of a gap */
@@ -32,12 +34,18 @@ struct ric_shooting {
   struct shooting_spectrum *spectrum; /* NULL until multipliers are asked for */
 };
 
+/** What is wanted of the end of a piece: its state; derivatives by the numbers of the equations, too; those by the
+ *  whole first state, too. */
+typedef enum piece_wish { WISH_STATE, WISH_DERIVATIVES, WISH_WHOLE } piece_wish;
+
 /** A piece of a motion that is moved along. */
 typedef struct piece_run {
   const arc_piece *piece;
   double begin, end;    /* times */
   size_t first_numbers; /* of its first state */
-  bool derivatives;     /* wanted */
+  piece_wish wish;
+  double *carried; /* [n + m][columns] tangent vectors: of the first numbers, of time where it moves, of the others */
+  size_t columns;
 } piece_run;
 
 /** Derivatives of the end of a piece, s->ends, in the form of tangent vectors. */
@@ -46,12 +54,15 @@ static inline tangents shooting_ends(const ric_shooting *s, const piece_run *run
   return (tangents){.columns = columns, .q = s->ends, .u = s->ends + s->arcs.coordinates * columns};
 }
 
-/** Sets s->x to the first state of a piece and says how it will run. */
-piece_run shooting_begin(ric_shooting *s, size_t piece, const double *z, double period, bool derivatives);
+/** Sets s->x to the first state of a piece and says how it will run. @param wish  WISH_WHOLE with a spectrum only */
+piece_run shooting_begin(ric_shooting *s, size_t piece, const double *z, double period, piece_wish wish);
 
-/** Moves s->x to the end of the piece, and sets s->ends.
+/** Moves s->x to the end of the piece, and sets s->ends and what is carried.
  *  @param watcher  may be NULL */
 ric_status shooting_move(ric_shooting *s, const piece_run *run, const arc_watch *watcher, ric_error *error);
+
+/** Column of what is carried that belongs to a row of the first state; NO_UNKNOWN where there is none. */
+size_t shooting_column(const ric_shooting *s, const piece_run *run, size_t row);
 
 /** The gap of the obstacle that is hit at the end of the piece, and its derivative in s->gap_row. */
 ric_status shooting_gap(ric_shooting *s, const piece_run *run, size_t obstacle, double *gap, ric_error *error);
@@ -62,11 +73,12 @@ ric_status shooting_hit(ric_shooting *s, const piece_run *run, ric_error *error)
 /** Energy of a first state x [n + m], and its gradient in s->gradient; x is moved, and put back. */
 ric_status shooting_energy(ric_shooting *s, double *x, double *energy, ric_error *error);
 
-/** Sees the pieces of a motion while the equations are evaluated; `begins` and `ends` may be NULL. */
+/** Sees the pieces of a motion while the equations are evaluated; functions may be NULL. */
 typedef struct shooting_observer {
-  void (*begins)(const piece_run *run, void *user);
+  ric_status (*begins)(const piece_run *run, void *user, ric_error *error);
   void (*segment)(const ric_segment *piece, double end, void *user);
-  void (*ends)(const piece_run *run, const double *x, void *user); /* before the impact there */
+  ric_status (*ends)(const piece_run *run, void *user, ric_error *error); /* at s->x, before the impact there */
+  bool whole; /* it looks at tangent vectors of the whole state */
   void *user;
 } shooting_observer;
 

@@ -2,7 +2,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "shooting_parts.h"
+#include "shooting_spectrum.h"
 
 /* An even motion begins at rest, or on the obstacles that it has hit. */
 static void even_start(const ric_shooting *s, const double *z, double *x) {
@@ -18,24 +18,6 @@ static bool begins_even(const ric_shooting *s, size_t piece) {
   return s->arcs.kind == RIC_MOTION_EVEN && piece == 0;
 }
 
-piece_run shooting_begin(ric_shooting *s, size_t piece, const double *z, double period, bool derivatives) {
-  const arc_piece *p = &s->arcs.pieces[piece];
-  if (begins_even(s, piece))
-    even_start(s, z, s->x);
-  else
-    memcpy(s->x, z + p->state, s->arcs.size * sizeof *s->x);
-  return (piece_run){.piece = p,
-                     .begin = piece_begin(p, z, period),
-                     .end = piece_finish(p, z, period),
-                     .first_numbers = piece == 0 ? arcs_first_numbers(&s->arcs) : s->arcs.size,
-                     .derivatives = derivatives};
-}
-
-static ric_status read_rates(ric_shooting *s, double t, ric_error *error) {
-  size_t n = s->arcs.coordinates;
-  return ric_system_rate(s->system, t, s->x, s->x + n, s->rates, s->rates + n, error);
-}
-
 /* Whether the beginning of the piece is a time that moves, in a system that knows the time: then its derivative is
  * carried along, too. */
 static bool carries_time(const ric_shooting *s, const arc_piece *p) {
@@ -43,30 +25,64 @@ static bool carries_time(const ric_shooting *s, const arc_piece *p) {
   return s->forced && !fixed;
 }
 
-/* Tangent vectors to begin with: the numbers of the first state; and minus the rates, for the beginning in time. */
-static ric_status set_carried(ric_shooting *s, const piece_run *run, size_t columns, ric_error *error) {
-  size_t n = s->arcs.coordinates, size = s->arcs.size;
-  bool even = run->first_numbers < size || (s->arcs.kind == RIC_MOTION_EVEN && run->piece == s->arcs.pieces);
-  memset(s->carried, 0, size * columns * sizeof *s->carried);
-  for (size_t i = 0; i < run->first_numbers; i++)
-    s->carried[(even && s->arcs.at_start[i] != NO_UNKNOWN ? n + i : i) * columns + i] = 1;
-  if (columns == run->first_numbers)
+piece_run shooting_begin(ric_shooting *s, size_t piece, const double *z, double period, piece_wish wish) {
+  const arc_piece *p = &s->arcs.pieces[piece];
+  size_t numbers = piece == 0 ? arcs_first_numbers(&s->arcs) : s->arcs.size;
+  bool whole = wish == WISH_WHOLE;
+  if (begins_even(s, piece))
+    even_start(s, z, s->x);
+  else
+    memcpy(s->x, z + p->state, s->arcs.size * sizeof *s->x);
+  return (piece_run){.piece = p,
+                     .begin = piece_begin(p, z, period),
+                     .end = piece_finish(p, z, period),
+                     .first_numbers = numbers,
+                     .wish = wish,
+                     .carried = whole ? s->spectrum->carried : s->carried,
+                     .columns = (whole ? s->arcs.size : numbers) + (carries_time(s, p) ? 1 : 0)};
+}
+
+static ric_status read_rates(ric_shooting *s, double t, ric_error *error) {
+  size_t n = s->arcs.coordinates;
+  return ric_system_rate(s->system, t, s->x, s->x + n, s->rates, s->rates + n, error);
+}
+
+size_t shooting_column(const ric_shooting *s, const piece_run *run, size_t row) {
+  size_t n = s->arcs.coordinates, i = row < n ? row : row - n, c = run->first_numbers;
+  if (c == s->arcs.size)
+    return row;
+  if ((s->arcs.at_start[i] != NO_UNKNOWN) == (row >= n))
+    return i;
+  return run->wish == WISH_WHOLE ? run->columns - n + i : NO_UNKNOWN;
+}
+
+/* Tangent vectors to begin with: unit vectors; and minus the rates, for the beginning in time. */
+static ric_status set_carried(ric_shooting *s, const piece_run *run, ric_error *error) {
+  size_t size = s->arcs.size, columns = run->columns, c = run->first_numbers;
+  memset(run->carried, 0, size * columns * sizeof *run->carried);
+  for (size_t i = 0; i < size; i++) {
+    size_t column = shooting_column(s, run, i);
+    if (column != NO_UNKNOWN)
+      run->carried[i * columns + column] = 1;
+  }
+  if (!carries_time(s, run->piece))
     return RIC_OK;
   RIC_TRY(read_rates(s, run->begin, error));
   for (size_t i = 0; i < size; i++)
-    s->carried[i * columns + columns - 1] = -s->rates[i];
+    run->carried[i * columns + c] = -s->rates[i];
   return RIC_OK;
 }
 
 /* From what was carried to derivatives by the first state and by the times of the arc: a piece [from, to] of an arc
  * from a to b begins at a + from (b - a), and ends at a + to (b - a). */
-static void set_ends(ric_shooting *s, const piece_run *run, size_t columns) {
+static void set_ends(ric_shooting *s, const piece_run *run) {
   const arc_piece *p = run->piece;
   size_t c = run->first_numbers;
-  bool carried = columns > c;
+  bool timed = carries_time(s, p);
   for (size_t i = 0; i < s->arcs.size; i++) {
-    double late = s->rates[i], early = carried ? s->carried[i * columns + c] : -late, *row = s->ends + i * (c + 2);
-    memcpy(row, s->carried + i * columns, c * sizeof *row);
+    const double *carried = run->carried + i * run->columns;
+    double late = s->rates[i], early = timed ? carried[c] : -late, *row = s->ends + i * (c + 2);
+    memcpy(row, carried, c * sizeof *row);
     row[c] = (1 - p->from) * early + (1 - p->to) * late;
     row[c + 1] = p->from * early + p->to * late;
   }
@@ -76,13 +92,12 @@ static void set_ends(ric_shooting *s, const piece_run *run, size_t columns) {
 }
 
 ric_status shooting_move(ric_shooting *s, const piece_run *run, const arc_watch *watcher, ric_error *error) {
-  size_t columns = run->first_numbers + (carries_time(s, run->piece) ? 1 : 0);
-  if (!run->derivatives)
+  if (run->wish == WISH_STATE)
     return arc_runner_move(&s->runner, run->begin, run->end, s->x, 0, NULL, watcher, error);
-  RIC_TRY(set_carried(s, run, columns, error));
-  RIC_TRY(arc_runner_move(&s->runner, run->begin, run->end, s->x, columns, s->carried, watcher, error));
+  RIC_TRY(set_carried(s, run, error));
+  RIC_TRY(arc_runner_move(&s->runner, run->begin, run->end, s->x, run->columns, run->carried, watcher, error));
   RIC_TRY(read_rates(s, run->end, error));
-  set_ends(s, run, columns);
+  set_ends(s, run);
   return RIC_OK;
 }
 
@@ -93,15 +108,15 @@ ric_status shooting_gap(ric_shooting *s, const piece_run *run, size_t obstacle, 
   tangents ends = shooting_ends(s, run), along = {.columns = 1, .q = s->rates, .u = s->rates + n};
   double rate = NAN, slope = NAN;
   const char *trouble = system->model->gap(system, obstacle, run->end, s->x, gap);
-  if (!trouble && run->derivatives)
+  if (!trouble && run->wish != WISH_STATE)
     trouble = system->model->gap_rate(system, obstacle, run->end, s->x, s->x + n, &rate);
-  if (!trouble && run->derivatives)
+  if (!trouble && run->wish != WISH_STATE)
     trouble = system->model->gap_derivative(system, obstacle, run->end, s->x, &ends, s->gap_row);
-  if (!trouble && run->derivatives)
+  if (!trouble && run->wish != WISH_STATE)
     trouble = system->model->gap_derivative(system, obstacle, run->end, s->x, &along, &slope);
   if (trouble)
     return ric_fail(error, RIC_ECALLBACK, "at t = %g, obstacle %zu: %s", run->end, obstacle, trouble);
-  for (size_t k = c; run->derivatives && k < c + 2; k++)
+  for (size_t k = c; run->wish != WISH_STATE && k < c + 2; k++)
     s->gap_row[k] += (rate - slope) * s->in_time[k];
   return RIC_OK;
 }
@@ -111,7 +126,7 @@ ric_status shooting_hit(ric_shooting *s, const piece_run *run, ric_error *error)
   double e = s->system->model->restitution(s->system, obstacle);
   jump_group group = {&obstacle, &e, 1, false};
   tangents ends = shooting_ends(s, run);
-  if (!run->derivatives)
+  if (run->wish == WISH_STATE)
     ends.columns = 0;
   return tangent_jump_map(&s->jump, run->end, &group, s->x, s->x + n, &ends, s->in_time, error);
 }

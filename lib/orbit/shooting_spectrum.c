@@ -1,5 +1,7 @@
 #include "shooting_spectrum.h"
 
+#include "shooting_look.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -18,12 +20,12 @@ static bool is_free(const ric_shooting *s) {
   return !s->system->model->forced(s->system);
 }
 
-ric_status shooting_spectrum_create(ric_shooting *s, shooting_spectrum **spectrum, ric_error *error) {
+static ric_status create(ric_shooting *s, shooting_spectrum **spectrum, ric_error *error) {
   size_t size = s->arcs.size, n = s->arcs.coordinates, bordered = is_even(s) ? n + 1 : size;
   shooting_spectrum *k = *spectrum = calloc(1, sizeof *k);
   if (k) {
     k->size = size;
-    k->matrix = size < SIZE_MAX / 64 / size ? malloc((size * size + 2 * size) * sizeof *k->matrix) : NULL;
+    k->matrix = size < SIZE_MAX / 64 / size ? malloc((3 * size * size + 4 * size) * sizeof *k->matrix) : NULL;
     k->contact = calloc(s->system->obstacle_count + 1, 1);
     k->bordered = gsl_matrix_alloc(bordered, bordered);
     k->order = gsl_permutation_alloc(bordered);
@@ -33,8 +35,11 @@ ric_status shooting_spectrum_create(ric_shooting *s, shooting_spectrum **spectru
     shooting_spectrum_destroy(spectrum);
     return ric_fail(error, RIC_ENOMEM, "no memory for a matrix of size %zu", size);
   }
-  k->start = k->matrix + size * size;
+  k->product = k->matrix + size * size;
+  k->carried = k->product + size * size;
+  k->start = k->carried + size * (size + 1);
   k->half = k->start + size;
+  k->after = k->half + size;
   ric_status status = tangent_jump_init(&k->jump, s->system, &s->law, size, error);
   if (status == RIC_OK && is_even(s))
     status = even_spectrum_reserve(&k->even, n, error);
@@ -73,34 +78,38 @@ static ric_status jump(ric_shooting *s, const piece_run *run, ric_error *error) 
   shooting_spectrum *k = s->spectrum;
   size_t n = s->arcs.coordinates, obstacle = run->piece->obstacle;
   double e = s->system->model->restitution(s->system, obstacle);
-  double rate = ric_system_gap_rate(s->system, obstacle, run->end, s->x, s->x + n);
+  double rate = ric_system_gap_rate(s->system, obstacle, run->end, s->x, s->x + n), *x = k->after;
   jump_group group = {&obstacle, &e, 1, false};
   tangents d = {.columns = k->size, .q = k->matrix, .u = k->matrix + n * k->size};
   ric_saltation_kind kind = RIC_SALTATION_GRAZING;
+  memcpy(x, s->x, k->size * sizeof *x);
   if (rate < 0) {
     for (size_t j = 0; j < s->system->obstacle_count; j++) {
       k->contact[j] = system_complies(s->system, j) && ric_system_gap(s->system, j, run->end, s->x) < 0
                           ? CONTACT_PRESSED
                           : CONTACT_OPEN;
     }
-    RIC_TRY(tangent_jump_apply(&k->jump, run->end, &group, s->grazing_tol, k->contact, k->contact, s->x, s->x + n, &d,
-                               &kind, error));
+    RIC_TRY(tangent_jump_apply(&k->jump, run->end, &group, s->grazing_tol, k->contact, k->contact, x, x + n, &d, &kind,
+                               error));
   }
   k->grazing = kind != RIC_SALTATION_DIFFERENTIABLE;
   k->obstacle = obstacle;
   return RIC_OK;
 }
 
-/* Carries the matrix along all pieces. */
-static ric_status carry(ric_shooting *s, const double *z, double period, ric_error *error) {
+/* What was carried along a piece, times the matrix up to its beginning. */
+static void multiply(const ric_shooting *s, const piece_run *run) {
   shooting_spectrum *k = s->spectrum;
-  for (size_t i = 0; i < s->arcs.count && !k->grazing; i++) {
-    piece_run run = shooting_begin(s, i, z, period, false);
-    RIC_TRY(arc_runner_move(&s->runner, run.begin, run.end, s->x, k->size, k->matrix, NULL, error));
-    if (run.piece->how == PIECE_IMPACT)
-      RIC_TRY(jump(s, &run, error));
+  memset(k->product, 0, k->size * k->size * sizeof *k->product);
+  for (size_t l = 0; l < k->size; l++) {
+    const double *before = entry(k, l, 0), *carried = run->carried + shooting_column(s, run, l);
+    for (size_t i = 0; i < k->size; i++) {
+      double x = carried[i * run->columns], *row = k->product + i * k->size;
+      for (size_t j = 0; x != 0 && j < k->size; j++)
+        row[j] += x * before[j];
+    }
   }
-  return RIC_OK;
+  memcpy(k->matrix, k->product, k->size * k->size * sizeof *k->matrix);
 }
 
 /* --- even motions ------------------------------------------------------------------------------------------------- */
@@ -158,16 +167,34 @@ static void set_half(ric_shooting *s) {
   }
 }
 
-static ric_status even_matrix(ric_shooting *s, const double *z, double period, ric_error *error) {
-  (void)shooting_begin(s, 0, z, period, false);
-  RIC_TRY(look_at_turning(s, s->arcs.at_start, 0, error));
+/* --- the matrix --------------------------------------------------------------------------------------------------- */
+
+static void set_identity(shooting_spectrum *k) {
+  memset(k->matrix, 0, k->size * k->size * sizeof *k->matrix);
+  for (size_t i = 0; i < k->size; i++)
+    *entry(k, i, i) = 1;
+}
+
+ric_status shooting_spectrum_begin(ric_shooting *s, ric_error *error) {
+  s->spectrum->grazing = false;
+  if (is_even(s))
+    RIC_TRY(look_at_turning(s, s->arcs.at_start, 0, error));
+  if (is_even(s))
+    set_start(s);
+  else
+    set_identity(s->spectrum);
+  return RIC_OK;
+}
+
+ric_status shooting_spectrum_pass(ric_shooting *s, const piece_run *run, ric_error *error) {
   if (s->spectrum->grazing)
     return RIC_OK;
-  set_start(s);
-  RIC_TRY(carry(s, z, period, error));
-  if (s->spectrum->grazing)
+  multiply(s, run);
+  if (run->piece->how == PIECE_IMPACT)
+    return jump(s, run, error);
+  if (run->piece->how != PIECE_HALF)
     return RIC_OK;
-  RIC_TRY(look_at_turning(s, s->arcs.at_half, period / 2, error));
+  RIC_TRY(look_at_turning(s, s->arcs.at_half, run->end, error));
   if (!s->spectrum->grazing)
     set_half(s);
   return RIC_OK;
@@ -194,27 +221,13 @@ static void set_block(ric_shooting *s) {
 
 /* --- results ------------------------------------------------------------------------------------------------------ */
 
-static ric_status reserve(ric_shooting *s, ric_error *error) {
+ric_status shooting_spectrum_reserve(ric_shooting *s, ric_error *error) {
   if (s->spectrum)
     return RIC_OK;
   gsl_error_handler_t *handler = gsl_set_error_handler_off(); /* which would abort when there is no memory */
-  ric_status status = shooting_spectrum_create(s, &s->spectrum, error);
+  ric_status status = create(s, &s->spectrum, error);
   gsl_set_error_handler(handler);
   return status;
-}
-
-ric_status shooting_matrix(ric_shooting *s, const double *z, double given, ric_error *error) {
-  double period;
-  RIC_TRY(shooting_period(s, z, given, &period, error));
-  RIC_TRY(reserve(s, error));
-  shooting_spectrum *k = s->spectrum;
-  k->grazing = false;
-  if (is_even(s))
-    return even_matrix(s, z, period, error);
-  memset(k->matrix, 0, k->size * k->size * sizeof *k->matrix);
-  for (size_t i = 0; i < k->size; i++)
-    *entry(k, i, i) = 1;
-  return carry(s, z, period, error);
 }
 
 /* By QR with column pivoting, since the LU of GSL allocates: each reflection of Q has the determinant -1, one with
@@ -325,6 +338,6 @@ ric_status shooting_multipliers(ric_shooting *s, const ric_multiplier_options *o
 
 ric_status ric_shooting_multipliers(ric_shooting *s, const double *z, double given,
                                     const ric_multiplier_options *options, ric_multipliers *m, ric_error *error) {
-  RIC_TRY(shooting_matrix(s, z, given, error));
+  RIC_TRY(shooting_look(s, z, given, LOOK_SPECTRUM, NULL, NULL, NULL, NULL, error));
   return shooting_multipliers(s, options, m, error);
 }

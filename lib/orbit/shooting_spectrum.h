@@ -23,7 +23,10 @@
 
 typedef struct shooting_spectrum {
   size_t size;          /* n + m */
-  double *matrix;       /* [n + m][n + m] G or M */
+  double *matrix;       /* [n + m][n + m] G or M, as far as it is known */
+  double *product;      /* the same, scratch */
+  double *carried;      /* [n + m][n + m + 1] tangent vectors along a piece */
+  double *after;        /* [n + m] state after an impact */
   double *start, *half; /* [n + m] rates (s, a) there; of even motions */
   even_spectrum even;
   multiplier_work work; /* of motions that are not even */
@@ -36,11 +39,14 @@ typedef struct shooting_spectrum {
   size_t obstacle;        /* which */
 } shooting_spectrum;
 
-ric_status shooting_spectrum_create(ric_shooting *s, shooting_spectrum **spectrum, ric_error *error);
+/** Makes s->spectrum; nothing when there is one. @returns RIC_ENOMEM */
+ric_status shooting_spectrum_reserve(ric_shooting *s, ric_error *error);
 void shooting_spectrum_destroy(shooting_spectrum **spectrum);
 
-/** Finds G or M at a solution: s->spectrum->matrix; or `grazing`. */
-ric_status shooting_matrix(ric_shooting *s, const double *z, double given, ric_error *error);
+/** For an observer of a run that carries the whole state: at the first state s->x, and at the end of every piece,
+ * before the impact there. Leaves G or M in s->spectrum->matrix; or `grazing`. */
+ric_status shooting_spectrum_begin(ric_shooting *s, ric_error *error);
+ric_status shooting_spectrum_pass(ric_shooting *s, const piece_run *run, ric_error *error);
 
 /** The multipliers of the matrix found. @param m  initialised for n + m */
 ric_status shooting_multipliers(ric_shooting *s, const ric_multiplier_options *options, ric_multipliers *m,

@@ -103,7 +103,7 @@ static const schema_entry rows[KEY_COUNT - KEY_BRANCH_PARAMETER] = {
     [KEY_BRANCH_TOLERANCE -
         KEY_BRANCH_PARAMETER] = {.path = "branch.tolerance",
                                  NUMBER,
-                                 .fallback = "1e-11",
+                                 .fallback = "1e-12",
                                  .low = 0,
                                  .low_open = true,
                                  .high = 0.01,

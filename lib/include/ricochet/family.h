@@ -48,7 +48,7 @@ typedef struct ric_family_problem {
 } ric_family_problem;
 
 typedef struct ric_family_options {
-  ric_curve_options curve; /* its newton_tol is 1e-11 by default, its poll asked too */
+  ric_curve_options curve; /* its newton_tol is 1e-12 by default, its poll asked too */
   bool multipliers;        /* default true: find them at every point, and the special points that they tell; at
                               most RIC_FAMILY_NUMBERS numbers of a state */
   ric_multiplier_options judge;
@@ -90,7 +90,8 @@ typedef struct ric_family_point {
   const double *z;                    /* [unknowns] shooting.h */
   const double *tangent;              /* [unknowns + 1] of the curve, in the direction of the walk */
   double given;                       /* the given number there */
-  const ric_orbit *orbit;             /* with outcome, energy, clearance */
+  const ric_orbit *orbit;             /* with outcome, energy, clearance; what needs a run, and the multipliers, may be
+                                         those of the motion before the last correction, which newton_tol bounds */
   const ric_multipliers *multipliers; /* NULL when they are not wanted */
   size_t obstacle;                    /* of grazing, impact_lost, impulse_sign, order; SIZE_MAX */
   double time;                        /* the same, in [0, T); NaN */
