@@ -191,6 +191,43 @@ static void amplitudes_are_those_of_the_whole_period(void **state) {
   }
 }
 
+/* The half that is run along and its mirror image, and a motion that is run along as a whole, are the same. */
+static void states_are_those_of_the_whole_period(void **state) {
+  (void)state;
+  static const size_t wall = 0;
+  static const ric_spring links[3] = {{3, 0, 0, 0}, {1, 0, 0.1, 0}, {0, 0, 0, 0}};
+  const ric_obstacle obstacle = ric_obstacle_wall(1, 2);
+  ric_lattice lattice = ric_lattice_default(2, RIC_ENDS_FIXED);
+  lattice.on_site = (ric_spring){0};
+  lattice.links = links;
+  const double guess[2] = {0.65, 2}, speed[2] = {0, -0.3}, time = 0;
+  const ric_shooting_problem even = {
+      .kind = RIC_MOTION_EVEN, .at_start = &wall, .start_count = 1, .flow = ric_flow_options_default()};
+  const ric_shooting_problem whole = {
+      .kind = RIC_MOTION_CONSERVATIVE, .sequence = &wall, .count = 1, .flow = ric_flow_options_default()};
+  shot a = shot_at(lattice_system(&lattice, &obstacle, 1), &even);
+  shot b = shot_at(lattice_system(&lattice, &obstacle, 1), &whole);
+  shot_guess(&a, guess, speed, NULL, 6.8);
+  shot_guess(&b, guess, speed, &time, 6.8);
+  shot_solve(&a);
+  shot_solve(&b);
+  for (size_t count = 2; count < 40; count += 7) {
+    double q[2][40][2], v[2][40][2];
+    assert_int_equal(ric_shooting_states(a.shooting, a.z, a.given, count, q[0][0], v[0][0], NULL), RIC_OK);
+    assert_int_equal(ric_shooting_states(b.shooting, b.z, b.given, count, q[1][0], v[1][0], NULL), RIC_OK);
+    for (size_t k = 0; k < count; k++)
+      for (int i = 0; i < 2; i++) {
+        assert_close(q[0][k][i], q[1][k][i], 1e-10);
+        assert_close(v[0][k][i], v[1][k][i], 1e-10);
+      }
+    assert_close(q[0][0][1], 2, 1e-12);
+    assert_close(v[0][count - 1][1], -v[0][0][1], 1e-12); /* before the impact */
+  }
+  assert_int_equal(ric_shooting_states(a.shooting, a.z, a.given, 1, a.z, a.z, NULL), RIC_EINVAL);
+  shot_clear(&a);
+  shot_clear(&b);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(even_motions_that_turn_beyond_what_they_hit_elsewhere_are_inadmissible),
@@ -200,6 +237,7 @@ int main(void) {
       cmocka_unit_test(states_at_half_the_period_are_those_before_an_impact_there),
       cmocka_unit_test(impacts_of_one_time_are_in_order),
       cmocka_unit_test(amplitudes_are_those_of_the_whole_period),
+      cmocka_unit_test(states_are_those_of_the_whole_period),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -122,6 +122,14 @@ RIC_API ric_status ric_shooting_orbit(ric_shooting *shooting, const double *z, d
 RIC_API ric_status ric_shooting_amplitude(ric_shooting *shooting, const double *z, double given, double *amplitude,
                                           ric_error *error);
 
+/** States of a solution at equal distances in time, t_k = t_0 + k T / (count - 1), with t_0 that of the first state:
+ * over a whole period. At an impact the state before it; NaN where arcs of an inadmissible motion run backwards.
+ *  @param count  >= 2
+ *  @param q, v  [count][n], [count][m]
+ *  @returns RIC_EINVAL; as ric_shooting_residual. */
+RIC_API ric_status ric_shooting_states(ric_shooting *shooting, const double *z, double given, size_t count, double *q,
+                                       double *v, ric_error *error);
+
 /** Multipliers of a solution, also of one that is not admissible, from the tangent vectors of its arcs. Of even motions
  * by the n x n block (M + M^-1) / 2, as orbit_multipliers.h says.
  *  @param multipliers  initialised for n + m; `unknown` where an impact grazes
