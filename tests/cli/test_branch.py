@@ -268,6 +268,22 @@ def an_oscillator_at_resonance_grazes_where_its_amplitude_says(ricochet, folder)
 
 
 @test
+def histories_are_states_over_the_period(ricochet, folder):
+    """Of the oscillator at resonance: the force over the damping, times the sine; after the impact where it hits."""
+    path = run(ricochet, folder, WALL, "--set", "branch.samples=9")
+    found = read(path)
+    with h5py.File(path) as file:
+        q, v = file["branch/point_history_q"][..., 0], file["branch/point_history_v"][..., 0]
+    times = np.linspace(0, 2 * np.pi, 9)
+    smooth = found["point_segment"] == 0
+    amplitude = 10 * found["point_parameter"][smooth, None]
+    assert np.allclose(q[smooth], amplitude * np.sin(times), atol=1e-9)
+    assert np.allclose(v[smooth], amplitude * np.cos(times), atol=1e-9)
+    assert np.allclose(q[~smooth][:, [0, -1]], 1, atol=1e-9)  # from the wall to the wall
+    assert np.allclose(v[~smooth][:, 0], -0.8 * v[~smooth][:, -1], atol=1e-9)
+
+
+@test
 def branches_go_one_way_or_the_other_and_by_natural_steps(ricochet, folder):
     text = DUFFING.replace("from: 0.5, to: 2.5", "from: 2.5, to: 0.5")
     found = read(run(ricochet, folder, text))

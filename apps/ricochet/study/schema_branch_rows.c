@@ -124,6 +124,18 @@ static const schema_entry rows[KEY_COUNT - KEY_BRANCH_PARAMETER] = {
                                                   OF_BRANCH,
                                                   .doc = "Whether the result stores the state and the impacts of every "
                                                          "point; those of special points are stored in any case."},
+    [KEY_BRANCH_SAMPLES - KEY_BRANCH_PARAMETER] =
+        {.path = "branch.samples",
+         .type = VALUE_INTEGER,
+         .scalar = true,
+         .null = true,
+         .fallback = "null",
+         .low = 2,
+         .high = 100000,
+         .no_sweep = "it changes the shape of the result",
+         OF_BRANCH,
+         .doc = "Number of states over the period, at equal distances in time from the first state, that the result "
+                "stores of every point; null: none."},
     [KEY_BRANCH_CROSS - KEY_BRANCH_PARAMETER] =
         {.path = "branch.cross",
          FLAG,

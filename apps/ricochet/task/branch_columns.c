@@ -76,6 +76,12 @@ static const column point_columns[] = {
     {.name = "point_residual", NUMBER, .long_name = "largest violation of the equations", CURVE},
     {.name = "point_q", NUMBER, .axes = {"particle"}, .long_name = "displacements of the first state", CURVE},
     {.name = "point_v", NUMBER, .axes = {"particle"}, .long_name = "velocities of the first state", CURVE},
+    {.name = "point_history_q",
+     NUMBER,
+     .axes = {"sample", "particle"},
+     .long_name = "displacements over the period, at equal distances in time",
+     CURVE},
+    {.name = "point_history_v", NUMBER, .axes = {"sample", "particle"}, .long_name = "velocities there", CURVE},
     {.name = "point_multipliers",
      .type = COLUMN_COMPLEX,
      .axes = {"multiplier"},
@@ -205,10 +211,13 @@ static void lay_out_curves(const char *followed, const char *traced, kind_plan *
 void branch_lay_out(const study_values *v, const char *followed, const char *traced, kind_plan *plan) {
   const size_t n = (size_t)value_number(v, KEY_MODEL_PARTICLES, 0);
   const table_axis state = {"particle", n};
-  table_axis axes[2];
+  const double samples = value_number(v, KEY_BRANCH_SAMPLES, 0); /* minus infinity: none */
+  table_axis axes[3];
   size_t count = 0;
-  if (value_flag(v, KEY_BRANCH_STATES))
+  if (value_flag(v, KEY_BRANCH_STATES) || samples > 0)
     axes[count++] = state;
+  if (samples > 0)
+    axes[count++] = (table_axis){"sample", (size_t)samples};
   if (strcmp(value_word(v, KEY_BRANCH_MULTIPLIERS), "all") == 0)
     axes[count++] = (table_axis){"multiplier", 2 * n};
   plan->rows = (table){.group = "branch", .row_axis = "task"};

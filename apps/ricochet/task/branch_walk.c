@@ -83,12 +83,26 @@ static double amplitude(walk *w, const ric_family_point *point) {
   return status == RIC_OK ? most : NAN;
 }
 
+/* States over the period, in their places in the record; NaN where the motion cannot be run once more. */
+static void put_history(walk *w, const ric_family_point *point, unsigned char *record) {
+  const table *t = &w->plan->tails[BRANCH_POINTS].records;
+  const column *q = table_column(t, "point_history_q"), *v = table_column(t, "point_history_v");
+  if (!q || !v)
+    return;
+  const ric_status status =
+      ric_shooting_states(ric_family_shooting(w->segments[w->current].family), point->z, point->given, q->extents[0],
+                          row_numbers(record, q), row_numbers(record, v), NULL);
+  if (status == RIC_ESTOPPED || status == RIC_ENOMEM)
+    w->status = status;
+}
+
 static void add_point(walk *w, const ric_family_point *point) {
   unsigned char *record = add_record(w, BRANCH_POINTS);
   if (!record)
     return;
   branch_put_point(&w->plan->tails[BRANCH_POINTS].records, point, branch_family_value(w->b, point->parameter),
                    amplitude(w, point), w->current, record);
+  put_history(w, point, record);
   if (w->states)
     add_impacts(w, point->orbit, (long long)w->points, -1);
   w->points++;
