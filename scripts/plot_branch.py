@@ -1,9 +1,9 @@
 #!/usr/bin/python3
-"""Draws branches: a quantity of the periodic motions against the parameter that is followed, with every special point.
+"""Draws branches: a quantity of the periodic motions against the parameter that is followed, or against another one,
+with every special point.
 
-Datasets: /branch/outcome, point_parameter, point_outcome, point_stable, point_segment and the quantity, which is one of
-energy, amplitude, clearance, period and multiplier_max; special_kind, special_parameter and the quantity there. Full
-lines are stable motions, dashed ones unstable or undecided, thin ones of unknown stability; dotted grey lines are
+Datasets: /branch/outcome, point_parameter, point_outcome, point_stable, point_segment and the quantities, which are of
+energy, amplitude, clearance, period, frequency (2 pi / period) and multiplier_max; the same of special points. Full lines are stable motions, dashed ones unstable or undecided, thin ones of unknown stability; dotted grey lines are
 solutions of the equations that are not admissible. Each segment of a branch has its colour, or, with several tasks, each
 task.
 """
@@ -22,6 +22,7 @@ QUANTITIES = {
     "amplitude": "largest displacement over the period",
     "clearance": "smallest gap",
     "period": "period $T$",
+    "frequency": r"frequency $2 \pi / T$",
     "multiplier_max": "largest modulus of a multiplier",
 }
 SPECIAL_LOOK = {
@@ -63,6 +64,8 @@ class Branches:
         words = ("point_outcome", "point_stable", "special_kind")
         self.columns = {name: group[name][()] for name in group if name not in words and group[name].ndim == 1}
         self.columns |= {name: figures.names_of(group[name]) for name in words}
+        for what in ("point", "special"):
+            self.columns[f"{what}_frequency"] = 2 * np.pi / self.columns[f"{what}_period"]
         self.names = figures.text_of(file["sweep"].attrs.get("parameters", "")).split() if "sweep" in file else []
         self.swept = [file["sweep"][name][()] for name in self.names]
         self.tasks = range(len(self.outcome))
@@ -92,12 +95,12 @@ def styles(result, rows):
 class Line:
     """One segment as nodes in their order: its points, and the special points between them."""
 
-    def __init__(self, result, rows, special, quantity):
+    def __init__(self, result, rows, special, along, quantity):
         columns = result.columns
         at = np.concatenate([rows, columns["special_point"][special] + rows_offset(result, rows) + 0.5])
         order = np.argsort(at, kind="stable")
         value = lambda name: np.concatenate([columns[f"point_{name}"][rows], columns[f"special_{name}"][special]])  # noqa: E731
-        self.x, self.y = value("parameter")[order], value(quantity)[order]
+        self.x, self.y = value(along)[order], value(quantity)[order]
         look = np.concatenate([styles(result, rows), np.full(len(special), None)])[order]
         self.parts = self._parts_of(look)
 
@@ -135,26 +138,26 @@ def draw_line(axes, line, colour, seen):
         axes.plot(line.x, line.y, ".", color=colour, markersize=5, zorder=3)
 
 
-def draw_task(axes, result, task, quantity, colour_of, seen):
+def draw_task(axes, result, task, along, quantity, colour_of, seen):
     points, special = result.rows("point", task), result.rows("special", task)
     of_point, of_special = result.columns["point_segment"][points], result.columns["special_segment"][special]
     for segment in np.unique(of_point):
-        line = Line(result, points[of_point == segment], special[of_special == segment], quantity)
+        line = Line(result, points[of_point == segment], special[of_special == segment], along, quantity)
         draw_line(axes, line, colour_of(task, segment), seen)
 
 
-def draw_special(axes, result, tasks, quantity):
-    """Markers of the special points. Legend entries."""
+def draw_special(axes, result, tasks, along, quantity, hidden=()):
+    """Markers of the special points, but for those of hidden kinds. Legend entries."""
     special = np.concatenate([result.rows("special", task) for task in tasks]).astype(int)
     kinds, columns = result.columns["special_kind"][special], result.columns
     entries = []
-    for name in figures.ordered(kinds, SPECIAL_LOOK):
+    for name in figures.ordered(set(kinds) - set(hidden), SPECIAL_LOOK):
         marker, colour, size = SPECIAL_LOOK.get(name, ("o", figures.INK, 6))
         where = special[kinds == name]
         look = {"marker": marker, "linestyle": "", "color": colour, "markersize": size, "markeredgewidth": 1.1}
         if marker != "|":
             look |= {"markeredgecolor": "white"}
-        axes.plot(columns["special_parameter"][where], columns[f"special_{quantity}"][where], zorder=5, **look)
+        axes.plot(columns[f"special_{along}"][where], columns[f"special_{quantity}"][where], zorder=5, **look)
         entries.append(Line2D([], [], label=f"{name.replace('_', ' ')} ({len(where)})", **look))
     return entries
 
@@ -189,10 +192,10 @@ def colours(figure, axes, result, tasks):
     return lambda task, segment: figures.colour_map()(norm(numbers[task])), []
 
 
-def frame(axes, result, quantity, tasks):
-    axes.set_xlabel(figures.parameter_label(result.followed))
+def frame(axes, result, along, quantity, tasks):
+    axes.set_xlabel(QUANTITIES.get(along) or figures.parameter_label(result.followed))
     axes.set_ylabel(QUANTITIES[quantity])
-    if result.study.word("scale") == "log":
+    if along == "parameter" and result.study.word("scale") == "log":
         axes.set_xscale("log")
     axes.margins(x=0.03, y=0.06)
     rows = np.concatenate([result.rows("point", task) for task in tasks])
@@ -200,22 +203,24 @@ def frame(axes, result, quantity, tasks):
         raise figures.FigureError(f"/branch/point_{quantity} is not known of any point")
 
 
+def line_entries(seen):
+    return [
+        Line2D([], [], linestyle=dashes, linewidth=width, label=label,
+               color=GREY if name == "inadmissible" else figures.INK)
+        for name, (label, dashes, width) in LINE_LOOK.items() if name in seen
+    ]  # fmt: skip
+
+
 def draw(result, options):
     tasks = choose_tasks(result, options.tasks)
     figure = plt.figure(figsize=(8.6, 6.2), constrained_layout=True)
     cells = figure.add_gridspec(2, 1)
     axes, seen = figure.add_subplot(cells[0]), set()
-    frame(axes, result, options.y, tasks)
+    frame(axes, result, options.x, options.y, tasks)
     colour_of, entries = colours(figure, axes, result, tasks)
     for task in tasks:
-        draw_task(axes, result, task, options.y, colour_of, seen)
-    looks = [name for name in LINE_LOOK if name in seen]
-    lines = [
-        Line2D([], [], linestyle=LINE_LOOK[name][1], linewidth=LINE_LOOK[name][2], label=LINE_LOOK[name][0],
-               color=GREY if name == "inadmissible" else figures.INK)
-        for name in looks
-    ]
-    entries = lines + entries + draw_special(axes, result, tasks, options.y)
+        draw_task(axes, result, task, options.x, options.y, colour_of, seen)
+    entries = line_entries(seen) + entries + draw_special(axes, result, tasks, options.x, options.y)
     cells.set_height_ratios([1, 0.02 + 0.045 * -(-len(entries) // COLUMNS)])
     figures.legend_row(figure.add_subplot(cells[1]), entries, COLUMNS)
     figures.put_title(figure, axes, result, 88)
@@ -223,6 +228,8 @@ def draw(result, options):
 
 
 def options(parser):
+    along = ("parameter", *QUANTITIES)
+    parser.add_argument("--x", choices=along, default="parameter", help="against what; default: the parameter")
     parser.add_argument("--y", choices=tuple(QUANTITIES), default="energy", help="what is drawn; default: energy")
     parser.add_argument(
         "--tasks", type=int, nargs="+", metavar="K", help="draw these tasks only, from 0; default: all"
