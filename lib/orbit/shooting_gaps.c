@@ -6,7 +6,7 @@
 
 enum { HALVINGS = 30 };
 
-/* On values of minima, absolute. */
+/* On values of minima, absolute; relative to values above 1, from which less would not take anything away. */
 static const double minimum_tol = 1e-14;
 
 static ric_status build(shooting_gaps *g, ric_shooting *s, ric_error *error) {
@@ -76,6 +76,11 @@ static void keep_smaller(gap_found *best, double value, double time, size_t obst
     *best = (gap_found){value, time, obstacle};
 }
 
+/* What a value must not exceed to be smaller: a search that goes on below it makes progress. */
+static double below(const gap_found *best) {
+  return best->value < INFINITY ? best->value - minimum_tol * fmax(1, fabs(best->value)) : INFINITY;
+}
+
 /* The gap of an obstacle on a part of a segment. */
 typedef struct gap_view {
   shooting_gaps *g;
@@ -103,7 +108,7 @@ static void look_for_violation(const gap_view *v) {
 static void look_at_free(const gap_view *v) {
   double y, value;
   gap_found *best = &v->g->free;
-  if (ric_poly_minimum(v->part->c, v->part->degree, best->value - minimum_tol, minimum_tol, &y, &value))
+  if (ric_poly_minimum(v->part->c, v->part->degree, below(best), minimum_tol, &y, &value))
     keep_smaller(best, value, time_at(v, y), v->obstacle);
   if (best->value < -v->g->zero)
     look_for_violation(v);
@@ -123,7 +128,7 @@ static void look_at_own(const gap_view *v) {
   ends_of_slope(v->part, &slope, &slope_end);
   if (*last < 0 && sense * slope > 0)
     keep_smaller(best, v->part->c[0], time_at(v, 0), v->obstacle);
-  while (ric_poly_first_minimum(v->part->c, v->part->degree, best->value - minimum_tol, &y, &value))
+  while (ric_poly_first_minimum(v->part->c, v->part->degree, below(best), &y, &value))
     keep_smaller(best, value, time_at(v, y), v->obstacle);
   *last = sense * slope_end;
   if (best->value < -v->g->zero)

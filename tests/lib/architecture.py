@@ -7,19 +7,20 @@ import pathlib
 import re
 import sys
 
-ROOMS = ["model", "flow", "impact", "orbit", "branch", "family", "grazing", "attractor"]
+ROOMS = ["model", "flow", "impact", "orbit", "modes", "branch", "family", "grazing", "attractor"]
 PUBLIC = {  # public headers by room
-    "model": {"chain", "resonance", "obstacle", "lattice", "mck", "user_system", "system"},
+    "model": {"chain", "resonance", "obstacle", "lattice", "mck", "user_system", "system", "normal_modes"},
     "flow": {"polynomial", "segment", "flow"},
     "impact": {"event", "trajectory", "saltation"},
     "orbit": {"pattern", "orbit", "verify", "monodromy", "multipliers", "orbit_multipliers", "shooting"},
+    "modes": {"impact_modes"},
     "branch": {"continuation"},
     "family": {"family"},
     "attractor": {"lyapunov"},
 }
 BASE = {"status", "export", "version"}
 UMBRELLA = "ricochet.h"
-FORBIDDEN_PAIRS = {("branch", "orbit")}  # branches know their problem through its residual only
+FORBIDDEN_PAIRS = {("branch", "orbit"), ("branch", "modes")}  # branches know their problem through its residual only
 FORBIDDEN_HEADERS = re.compile(r"^(mpi|hdf5|yaml|omp|pthread|time|sys/time)\.h$|^H5")
 FORBIDDEN_WORDS = re.compile(
     r"\b(FILE\b|stdin\b|stdout\b|stderr\b|"

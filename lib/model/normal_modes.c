@@ -1,0 +1,146 @@
+#include "ricochet/normal_modes.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <gsl/gsl_eigen.h>
+#include <gsl/gsl_errno.h>
+
+#include "cholesky.h"
+#include "largest.h"
+#include "linear_part.h"
+#include "mck_rows.h"
+
+/* Components this near to the largest, relatively, are as large: which one is the first must not depend on rounding. */
+static const double tie = 1e-6;
+
+/* The eigenvalue problem of A = L^-1 K L^-T. */
+typedef struct problem {
+  size_t n;
+  bool diagonal;  /* the mass */
+  double *factor; /* L [n][n], or the roots of the masses [n] */
+  double *a, *y;  /* [n][n] A; eigenvectors, one a column */
+  double *values; /* [n] */
+  gsl_eigen_symmv_workspace *work;
+} problem;
+
+static void problem_clear(problem *p) {
+  gsl_eigen_symmv_free(p->work);
+  free(p->factor);
+  free(p->a);
+  free(p->y);
+  free(p->values);
+}
+
+static ric_status problem_init(problem *p, const ric_system *system, ric_error *error) {
+  size_t n = system->coordinates;
+  *p = (problem){.n = n, .diagonal = system->uncoupled};
+  if (mck_square_fits(n)) {
+    p->factor = malloc((p->diagonal ? n : n * n) * sizeof *p->factor);
+    p->a = malloc(n * n * sizeof *p->a);
+    p->y = malloc(n * n * sizeof *p->y);
+    p->values = malloc(n * sizeof *p->values);
+    p->work = gsl_eigen_symmv_alloc(n);
+  }
+  if (p->factor && p->a && p->y && p->values && p->work)
+    return RIC_OK;
+  return ric_fail(error, RIC_ENOMEM, "no memory for the modes of %zu coordinates", n);
+}
+
+/* M = L L^T. */
+static ric_status factorise(problem *p, const ric_system *system, ric_error *error) {
+  linear_part_mass(system, p->factor);
+  for (size_t i = 0; p->diagonal && i < p->n; i++)
+    p->factor[i] = sqrt(p->factor[i]);
+  if (!p->diagonal && !cholesky_factor(p->factor, p->n))
+    return ric_fail(error, RIC_ENUMERIC, "the mass matrix is not positive definite to rounding");
+  return RIC_OK;
+}
+
+/* x = L^-1 x. */
+static void divide(const problem *p, double *x) {
+  for (size_t i = 0; p->diagonal && i < p->n; i++)
+    x[i] /= p->factor[i];
+  if (!p->diagonal)
+    cholesky_solve_lower(p->factor, p->n, p->n, x);
+}
+
+static void transpose(double *a, size_t n) {
+  for (size_t i = 0; i < n; i++)
+    for (size_t j = 0; j < i; j++) {
+      double kept = a[i * n + j];
+      a[i * n + j] = a[j * n + i];
+      a[j * n + i] = kept;
+    }
+}
+
+/* Rows of K become those of K L^-T, and rows of its transpose those of L^-1 K L^-T. */
+static ric_status reduce(problem *p, ric_error *error) {
+  for (int side = 0; side < 2; side++) {
+    for (size_t i = 0; i < p->n; i++)
+      divide(p, p->a + i * p->n);
+    transpose(p->a, p->n);
+  }
+  for (size_t e = 0; e < p->n * p->n; e++)
+    if (!isfinite(p->a[e]))
+      return ric_fail(error, RIC_ENUMERIC, "the stiffness over the mass overflows");
+  return RIC_OK;
+}
+
+static ric_status decompose(problem *p, ric_error *error) {
+  gsl_matrix_view a = gsl_matrix_view_array(p->a, p->n, p->n), y = gsl_matrix_view_array(p->y, p->n, p->n);
+  gsl_vector_view values = gsl_vector_view_array(p->values, p->n);
+  int code = gsl_eigen_symmv(&a.matrix, &values.vector, &y.matrix, p->work);
+  if (!code)
+    code = gsl_eigen_symmv_sort(&values.vector, &y.matrix, GSL_EIGEN_SORT_VAL_ASC);
+  if (code)
+    return ric_fail(error, RIC_ENUMERIC, "modes of %zu coordinates: %s", p->n, gsl_strerror(code));
+  double rounding = 8 * DBL_EPSILON * (double)p->n * largest(p->values, p->n);
+  if (!(p->values[0] >= -rounding))
+    return ric_fail(error, RIC_ENUMERIC, "w^2 = %g of the slowest mode, expected >= 0: the stiffness is not definite",
+                    p->values[0]);
+  for (size_t j = 0; j < p->n && p->values[j] <= rounding; j++)
+    p->values[j] = 0;
+  return RIC_OK;
+}
+
+static ric_status solve(problem *p, const ric_system *system, ric_error *error) {
+  RIC_TRY(factorise(p, system, error));
+  RIC_TRY(linear_part_stiffness(system, p->a, error));
+  RIC_TRY(reduce(p, error));
+  return decompose(p, error);
+}
+
+/* phi = L^-T y. */
+static void set_shape(const problem *p, size_t mode, double *phi) {
+  size_t n = p->n, first = 0;
+  for (size_t i = 0; i < n; i++)
+    phi[i] = p->y[i * n + mode] / (p->diagonal ? p->factor[i] : 1);
+  if (!p->diagonal)
+    cholesky_solve_upper(p->factor, n, n, phi);
+  double most = largest(phi, n), sign;
+  while (fabs(phi[first]) < (1 - tie) * most)
+    first++;
+  sign = copysign(1, phi[first]);
+  for (size_t i = 0; i < n; i++)
+    phi[i] *= sign;
+}
+
+ric_status ric_normal_modes(const ric_system *system, double *frequency, double *shape, ric_error *error) {
+  problem p = {0};
+  if (system->taylor == SYSTEM_USER)
+    return ric_fail(error, RIC_EINVAL, "modes of a user system, expected a lattice or an M-C-K system");
+  gsl_error_handler_t *handler = gsl_set_error_handler_off(); /* which would abort when there is no memory */
+  ric_status status = problem_init(&p, system, error);
+  if (status == RIC_OK)
+    status = solve(&p, system, error);
+  for (size_t j = 0; status == RIC_OK && j < p.n; j++) {
+    frequency[j] = sqrt(p.values[j]);
+    set_shape(&p, j, shape + j * p.n);
+  }
+  problem_clear(&p);
+  gsl_set_error_handler(handler);
+  return status;
+}
