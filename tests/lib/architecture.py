@@ -13,7 +13,7 @@ PUBLIC = {  # public headers by room
     "flow": {"polynomial", "segment", "flow"},
     "impact": {"event", "trajectory", "saltation"},
     "orbit": {"pattern", "orbit", "verify", "monodromy", "multipliers", "orbit_multipliers", "shooting"},
-    "modes": {"impact_modes"},
+    "modes": {"impact_modes", "ritz"},
     "branch": {"continuation"},
     "family": {"family"},
     "attractor": {"lyapunov"},

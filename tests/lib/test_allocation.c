@@ -9,6 +9,7 @@
 #include <errno.h>
 #include <stdbool.h>
 
+#include "approximated.h"
 #include "forced_oscillator.h"
 #include "scenario/family_scenario.h"
 #include "solved.h"
@@ -452,6 +453,50 @@ static void families_without_memory_are_refused(void **state) {
   }
 }
 
+/* Newton's method of others may ask for F and J a thousand times. */
+static void equations_of_ritz_allocate_nothing(void **state) {
+  (void)state;
+  shot s = duffing_mode(0.1, 0.4, -1);
+  approximated a = approximate(&s, 4, true);
+  double F[11], J[121], F_period[11], q[2], v[2];
+  size_t before = allocations;
+  assert_int_equal(ric_ritz_residual(a.ritz, a.c, s.given, F, J, F_period, NULL), RIC_OK);
+  assert_int_equal(ric_ritz_use(a.ritz, 3, a.c, NULL), RIC_OK);
+  assert_int_equal(ric_ritz_residual(a.ritz, a.c, s.given, F, J, F_period, NULL), RIC_OK);
+  ric_ritz_state(a.ritz, a.c, s.given, 1, q, v);
+  assert_true(ric_ritz_defect(a.ritz, a.c, s.given) > 0);
+  assert_int_equal(allocations - before, 0);
+  approximated_clear(&a);
+  shot_clear(&s);
+}
+
+static ric_status fit_by_ritz(shot *s) {
+  double c[35];
+  ric_ritz *ritz = NULL;
+  ric_status status = ric_ritz_create(s->system, 0, NULL, &ritz, NULL);
+  if (status == RIC_OK)
+    status = ric_ritz_fit(ritz, s->shooting, s->z, s->given, 0, c, NULL);
+  ric_ritz_destroy(&ritz);
+  return status;
+}
+
+static void fits_of_ritz_without_memory_are_refused(void **state) {
+  (void)state;
+  shot s = duffing_mode(0.1, 0.4, -1);
+  ric_status status = RIC_ENOMEM;
+  size_t k = 0;
+  for (; status == RIC_ENOMEM && k < 1000; k++) {
+    until_refusal = k + 1;
+    status = fit_by_ritz(&s);
+    if (until_refusal == 0)
+      assert_int_equal(status, RIC_ENOMEM);
+  }
+  until_refusal = 0;
+  assert_int_equal(status, RIC_OK);
+  assert_true(k > 10);
+  shot_clear(&s);
+}
+
 static void check_estimate(scenario s, ric_orbit_method method) {
   size_t before = most_live = live;
   solved x = solved_by(method, s);
@@ -490,6 +535,8 @@ int main(void) {
       cmocka_unit_test(following_a_forced_family_again_allocates_nothing),
       cmocka_unit_test(families_without_memory_are_refused),
       cmocka_unit_test(following_a_curve_allocates_nothing),
+      cmocka_unit_test(equations_of_ritz_allocate_nothing),
+      cmocka_unit_test(fits_of_ritz_without_memory_are_refused),
       cmocka_unit_test(memory_is_what_was_estimated),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

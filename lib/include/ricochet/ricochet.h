@@ -24,6 +24,7 @@
 #include "pattern.h"
 #include "polynomial.h"
 #include "resonance.h"
+#include "ritz.h"
 #include "saltation.h"
 #include "segment.h"
 #include "shooting.h"
