@@ -49,6 +49,17 @@ static work_done cubic(size_t points, int multipliers) {
   return walk(&s, failed, 2);
 }
 
+static work_done series(size_t n, int multipliers) {
+  family_scenario s;
+  int failed = family_scenario_series(&s, n, 0.98, 0.9);
+  s.options.multipliers = multipliers;
+  s.options.curve.newton_tol = 1e-10;
+  s.problem.motion.flow.tolerance = 1e-13;
+  s.options.curve.points = 200;
+  s.options.curve.step = s.options.curve.step_most = 0.02;
+  return walk(&s, failed, n);
+}
+
 static work_done chain(size_t n, int multipliers) {
   family_scenario s;
   int failed = family_scenario_impact(&s, n, period, 0.01, 0.18);
@@ -63,5 +74,6 @@ const benchmark family_benchmarks[] = {
     {"family_hertz_multipliers", "the same with multipliers", 3, 100, 1, hertz},
     {"family_cubic", "200 motions of two masses with a cubic spring and a wall", 11, 200, 0, cubic},
     {"family_cubic_multipliers", "the same with multipliers", 5, 200, 1, cubic},
+    {"family_series", "200 motions of 20 masses with cubic springs and a wall, with multipliers", 3, 20, 1, series},
     {"family_chain", "50 orbits of 1000 impact oscillators", 1, 1000, 0, chain},
     {0}};

@@ -84,6 +84,47 @@ int family_scenario_two_masses(family_scenario *s, double longest, double shorte
   return 0;
 }
 
+/* The orbit of the linear springs, in closed form. */
+static ric_status guess_linear(family_scenario *s, double part, double *first_period) {
+  ric_impact_modes *modes = NULL;
+  ric_orbit orbit = {0};
+  size_t n = s->lattice.particles;
+  RIC_TRY(ric_impact_modes_create(s->system, 0, &modes, NULL));
+  ric_status status = ric_orbit_init(&orbit, n, 1, NULL);
+  *first_period = 2 * acos(-1) / ric_impact_modes_frequencies(modes)[0];
+  if (status == RIC_OK)
+    status = ric_impact_modes_orbit(modes, part * *first_period, &orbit, NULL);
+  for (size_t i = 0; i < n && status == RIC_OK; i++) {
+    s->q[i] = orbit.q[i];
+    s->u[i] = orbit.v[i];
+  }
+  ric_orbit_clear(&orbit);
+  ric_impact_modes_destroy(&modes);
+  return status;
+}
+
+int family_scenario_series(family_scenario *s, size_t n, double from, double to) {
+  const ric_obstacle wall = {.coordinate = n - 1, .side = -1, .position = 2, .restitution = 1, .stiffness = INFINITY};
+  double period;
+  *s = (family_scenario){.lattice = ric_lattice_default(n, RIC_ENDS_FIXED)};
+  if (n > FAMILY_SCENARIO_MASSES || allocate(s, n))
+    return -1;
+  s->lattice.on_site = (ric_spring){0};
+  s->lattice.links = s->springs;
+  for (size_t i = 0; i < n; i++)
+    s->springs[i] = (ric_spring){.linear = 1};
+  if (ric_system_create_lattice(&s->lattice, &wall, 1, &s->system, NULL) != RIC_OK ||
+      guess_linear(s, from, &period) != RIC_OK)
+    return -1;
+  for (size_t i = 0; i < n; i++)
+    s->springs[i].cubic = 0.1;
+  s->problem.system = s->system;
+  s->problem.motion.at_start = &s->hit; /* obstacle 0 */
+  s->problem.motion.start_count = 1;
+  set_range(s, from * period, to * period);
+  return ric_system_set_lattice(s->system, &s->lattice, NULL) == RIC_OK ? 0 : -1;
+}
+
 void family_scenario_clear(family_scenario *s) {
   ric_system_destroy(&s->system);
   free(s->q);

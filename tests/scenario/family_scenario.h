@@ -5,9 +5,11 @@
 
 #include <ricochet/ricochet.h>
 
+enum { FAMILY_SCENARIO_MASSES = 20 /* most in series */ };
+
 typedef struct family_scenario {
   ric_lattice lattice;
-  ric_spring springs[3]; /* of the links of two masses */
+  ric_spring springs[FAMILY_SCENARIO_MASSES + 1]; /* of the links of masses in series */
   size_t hit;
   ric_system *system;
   ric_family_problem problem; /* its user is the scenario: do not move it */
@@ -22,6 +24,10 @@ int family_scenario_hertz(family_scenario *s, size_t n, double stiffness, double
 
 /** The same of a chain of impact oscillators whose middle particle hits. */
 int family_scenario_impact(family_scenario *s, size_t n, double period, double least, double most);
+
+/** n masses in series on springs 1 with a cubic part of 0.1, wall at 2 before the last: along the period, from
+ *  a part of that of the first mode to another. */
+int family_scenario_series(family_scenario *s, size_t n, double from, double to);
 
 /** Two masses on springs 3 and 1, the second with a cubic part of 0.1, wall at 2 before the second mass: along the
  * period, from `longest` down. */
