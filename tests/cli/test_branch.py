@@ -100,7 +100,8 @@ def parameters_are_refused_by_name_with_the_nearest_one(ricochet, folder):
         ("to: 0.15\n", "to: 0.15\nsweep: {parameter: model.gamma, values: [0, 1]}\n", 13,
          "branch.parameter = model.gamma is swept, too"),
         ("  parameter: model.gamma\n", "", 0, "missing key branch.parameter (text)"),
-        ("  from: 0\n", "", 0, "missing key branch.from (a number)"),
+        ("model.gamma\n  from: 0\n", "model.hertz\n", 13, "missing key branch.from (a number): model.hertz has no value"),
+        ("model.gamma\n  from: 0\n  to: 0.15", "model.gamma\n  to: 0", 14, "branch.to = 0 is where the branch starts"),
     ])
 
 

@@ -109,6 +109,42 @@ static void a_study_that_restarts_need_not_say_where_it_starts(void **state) {
   assert_refused(text, strlen(text), &set, 1, "s.yaml: ", "missing key orbit.period", "");
 }
 
+static void branches_that_do_not_say_start_at_the_own_value(void **state) {
+  (void)state;
+  static const char text[] = "kind: branch\nmodel: {type: duffing_chain, particles: 2, cubic: [0, 0.1], wall: 2}\n"
+                             "orbit: {period: 7, at_start: [1]}\nbranch: {parameter: 'model.cubic[1]', to: 1}\n";
+  study *s = parsed(text, NULL, 0);
+  study_values *v = study_values_create(s);
+  assert_non_null(v);
+  assert_true(value_number(v, KEY_BRANCH_FROM, 0) == 0.1 && value_number(v, KEY_MODEL_CUBIC, 1) == 0.1);
+  study_values_destroy(&v);
+  study_destroy(&s);
+  const char *set = "branch.parameter=orbit.energy";
+  s = parsed(text, &set, 1);
+  v = study_values_create(s);
+  assert_non_null(v);
+  assert_true(value_number(v, KEY_BRANCH_FROM, 0) == -INFINITY && value_number(v, KEY_ORBIT_ENERGY, 0) == -INFINITY);
+  study_values_begin(v, 1.5);
+  assert_true(value_number(v, KEY_BRANCH_FROM, 0) == 1.5 && value_number(v, KEY_ORBIT_ENERGY, 0) == 1.5);
+  study_values_at(v, 0);
+  assert_true(value_number(v, KEY_BRANCH_FROM, 0) == -INFINITY);
+  study_values_destroy(&v);
+  study_destroy(&s);
+}
+
+static void single_values_mean_what_the_type_of_model_says(void **state) {
+  (void)state;
+  study *s = parsed("kind: trajectory\nmodel: {type: duffing_chain, particles: 3, wall: 2, mass: 4}\nstart: {q: 0}\n"
+                    "time: {duration: 1}\n",
+                    NULL, 0);
+  study_values *v = study_values_create(s);
+  assert_non_null(v);
+  assert_true(value_of_particle(v, KEY_MODEL_WALL, 0) == -INFINITY && value_of_particle(v, KEY_MODEL_WALL, 2) == 2);
+  assert_true(value_of_particle(v, KEY_MODEL_FLOOR, 2) == -INFINITY && value_of_particle(v, KEY_MODEL_MASS, 1) == 4);
+  study_values_destroy(&v);
+  study_destroy(&s);
+}
+
 static void other_kinds_follow_nothing(void **state) {
   (void)state;
   study *s = parsed(base_study, NULL, 0);
@@ -125,6 +161,8 @@ int main(void) {
       cmocka_unit_test(elements_of_lists_can_be_followed),
       cmocka_unit_test(what_is_not_said_is_known_to_be_a_default),
       cmocka_unit_test(a_study_that_restarts_need_not_say_where_it_starts),
+      cmocka_unit_test(branches_that_do_not_say_start_at_the_own_value),
+      cmocka_unit_test(single_values_mean_what_the_type_of_model_says),
       cmocka_unit_test(other_kinds_follow_nothing),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -25,9 +25,9 @@ static void later_versions_are_refused_by_name(void **state) {
       {"kind: orbits", "kind: basin",
        "s.yaml:1: ", "kind = basin is not in this version, expected one of orbits, trajectory, branch", NULL},
       {"type: chain", "type: oscillator",
-       "s.yaml:4: ", "model.type = oscillator is not in this version, expected chain", NULL},
-      {"type: chain", "mass: 3\n  type: duffing_chain",
-       "s.yaml:5: ", "model.type = duffing_chain is not in this version", NULL},
+       "s.yaml:4: ", "model.type = oscillator is not in this version, expected one of chain", NULL},
+      {"type: chain", "mass: 3\n  type: grazing_map", "s.yaml:5: ", "model.type = grazing_map is not in this version",
+       NULL},
       {NULL, "model: {type: grazing_map, lambda: 0.5}\nkind: diagram\n",
        "s.yaml:2: ", "kind = diagram is not in this version", NULL},
       {"method: impulse", "method: shooting",
@@ -106,11 +106,11 @@ static void patterns_that_no_chain_has_are_refused(void **state) {
        "orbit.at_start[1] too"},
       {"  at_start: [15, 3]\n  at_half: [4]\n", "  at_start: []\n", "s.yaml:12: ", "both empty", "at least one"},
       {"  at_start: [15, 3]\n  at_half: [4]\n", "", "s.yaml: ", "both empty", "at least one"},
-      {"floor: -1", "floor: null", "s.yaml:12: ", "orbit.at_start[0] = 15 has no floor to hit", NULL},
+      {"floor: -1", "floor: null", "s.yaml:12: ", "orbit.at_start[0] = 15 has no floor or wall to hit", NULL},
       {"30\n  ends: periodic\n  gamma: 0.1\n  floor: -1",
        "16\n  ends: periodic\n  gamma: 0.1\n  floor: [-1, -1, -1, "
        "-1, ~, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1]",
-       "s.yaml:13: ", "orbit.at_half[0] = 4 has no floor to hit", NULL},
+       "s.yaml:13: ", "orbit.at_half[0] = 4 has no floor or wall to hit", NULL},
       {"floor: -1", "floor: [-1, -1]", "s.yaml:8: ", "model.floor has 2 elements, expected 30", NULL},
   };
   ASSERT_ALL_REFUSED(cases);
@@ -120,7 +120,7 @@ static void missing_keys_are_named_with_what_they_allow(void **state) {
   (void)state;
   static const refusal cases[] = {
       {"kind: orbits\n", "", "s.yaml: ", "missing key kind (one of orbits, trajectory, branch)", NULL},
-      {"  type: chain\n", "", "s.yaml: ", "missing key model.type (chain)", NULL},
+      {"  type: chain\n", "", "s.yaml: ", "missing key model.type (one of chain, duffing_chain)", NULL},
       {"  particles: 30\n", "", "s.yaml: ", "missing key model.particles (an integer from 1 to 1000000000)", NULL},
       {"  period: 1.5 pi\n", "", "s.yaml: ", "missing key orbit.period (a number > 0)", NULL},
       {NULL, "kind: orbits\nmodel: {type: chain, particles: 2}\norbit: {period: 1, at_start: [0]}\n",

@@ -192,6 +192,11 @@ static void assign_state(assignments *a, const result_motion *m) {
   l = (line){0};
   append(&l, "orbit.excited=[]");
   add(a, &l);
+  if (a->failed)
+    return;
+  l = (line){0};
+  append(&l, "orbit.mode=null");
+  add(a, &l);
 }
 
 /* A study names particles: of one between a floor and a wall it means the floor. */

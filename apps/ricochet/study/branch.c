@@ -65,6 +65,20 @@ static int check_values(const study *s, const document *d, const study_parameter
   return code;
 }
 
+static double own_value(const study *s, const study_parameter *p) {
+  const typed_value *value = &s->values[p->key];
+  return value->present ? value->numbers[p->item < 0 ? 0 : p->item] : -INFINITY;
+}
+
+/* The parameter starts where the branch does, and the branch, where it does not say, at the parameter's own value. */
+static int supply_start(study *s, const document *d, message *why) {
+  const parameter_use use = use_of(s, KEY_BRANCH_PARAMETER);
+  if (is_set(s, KEY_BRANCH_FROM))
+    return parameter_supply(s, d, &use, use.node, s->followed.key, first(s, KEY_BRANCH_FROM), why);
+  s->values[KEY_BRANCH_FROM].numbers[0] = own_value(s, &s->followed);
+  return 0;
+}
+
 static int read_followed(study *s, const document *d, message *why) {
   static const study_key keys[] = {KEY_BRANCH_FROM, KEY_BRANCH_TO, KEY_BRANCH_LOW, KEY_BRANCH_HIGH};
   study_parameter found;
@@ -75,10 +89,7 @@ static int read_followed(study *s, const document *d, message *why) {
     return code;
   s->followed = found;
   code = check_values(s, d, &found, keys, sizeof keys / sizeof *keys, why);
-  if (code || !s->values[KEY_BRANCH_FROM].present)
-    return code;
-  const parameter_use use = use_of(s, KEY_BRANCH_PARAMETER);
-  return parameter_supply(s, d, &use, use.node, found.key, first(s, KEY_BRANCH_FROM), why);
+  return code ? code : supply_start(s, d, why);
 }
 
 static int read_traced(study *s, const document *d, message *why) {
@@ -118,6 +129,11 @@ bool branch_traces(const study *s) {
 
 /* --- its range and its steps --- */
 
+/* Where a bound stands; of a start that is the study's own value, the name of the parameter. */
+static int node_of_bound(const study *s, study_key key) {
+  return s->values[key].node ? s->values[key].node : s->values[KEY_BRANCH_PARAMETER].node;
+}
+
 static int check_log(const study *s, const document *d, message *why) {
   static const study_key keys[] = {KEY_BRANCH_FROM, KEY_BRANCH_TO, KEY_BRANCH_LOW};
   char value[32];
@@ -125,18 +141,38 @@ static int check_log(const study *s, const document *d, message *why) {
     return 0;
   for (size_t i = 0; i < sizeof keys / sizeof *keys; i++)
     if (is_set(s, keys[i]) && !(first(s, keys[i]) > 0))
-      return document_refuse(d, s->values[keys[i]].node, why, "%s = %s with scale: log, expected a number > 0",
+      return document_refuse(d, node_of_bound(s, keys[i]), why, "%s = %s with scale: log, expected a number > 0",
                              schema_row(keys[i])->path, shown(first(s, keys[i]), value, sizeof value));
+  return 0;
+}
+
+/* Whether the branch starts at the energy of a motion that is found by its period. */
+static bool starts_at_period(const study *s) {
+  return s->followed.key == KEY_ORBIT_ENERGY && !is_set(s, KEY_BRANCH_FROM);
+}
+
+static int check_from(const study *s, const document *d, message *why) {
+  if (is_set(s, KEY_BRANCH_FROM))
+    return 0;
+  if (!starts_at_period(s))
+    return document_refuse(d, s->values[KEY_BRANCH_PARAMETER].node, why,
+                           "missing key branch.from (a number): %s has no value of its own", s->followed.name);
+  if (branch_from_mode(s))
+    return document_refuse(d, s->values[KEY_BRANCH_PARAMETER].node, why,
+                           "missing key branch.from (a number): at which energy the branch starts, which orbit.mode "
+                           "does not say");
   return 0;
 }
 
 /* The start lies within the bounds, with room on one side. */
 static int check_range(const study *s, const document *d, message *why) {
-  const double from = first(s, KEY_BRANCH_FROM), to = first(s, KEY_BRANCH_TO);
+  const double to = first(s, KEY_BRANCH_TO), from = starts_at_period(s) ? to : first(s, KEY_BRANCH_FROM);
   const double low = is_set(s, KEY_BRANCH_LOW) ? first(s, KEY_BRANCH_LOW) : fmin(from, to);
   const double high = is_set(s, KEY_BRANCH_HIGH) ? first(s, KEY_BRANCH_HIGH) : fmax(from, to);
   char start[32], bound[32];
   shown(from, start, sizeof start);
+  if (starts_at_period(s))
+    return check_log(s, d, why);
   if (from == to)
     return document_refuse(d, s->values[KEY_BRANCH_TO].node, why,
                            "branch.to = %s is where the branch starts, expected another value", start);
@@ -176,8 +212,7 @@ static int check_steps(const study *s, const document *d, message *why) {
 static int check_trace_range(const study *s, const document *d, message *why) {
   const double low = first(s, KEY_BRANCH_TRACE_LOW), high = first(s, KEY_BRANCH_TRACE_HIGH);
   const study_parameter *p = &s->traced;
-  const typed_value *at = &s->values[p->key];
-  const double start = at->present ? at->numbers[p->item < 0 ? 0 : p->item] : -INFINITY;
+  const double start = own_value(s, p);
   char bound[32], own[32];
   shown(start, own, sizeof own);
   if (!(start > -INFINITY))
@@ -266,11 +301,19 @@ static int refuse_key(const study *s, const document *d, study_key key, message 
                          s->values[KEY_ORBIT_MOTION].text, but);
 }
 
+static bool gives_energy(const study *s) {
+  return is_set(s, KEY_ORBIT_ENERGY) || mover_of(s, KEY_ORBIT_ENERGY) != KEY_COUNT;
+}
+
+bool branch_from_mode(const study *s) {
+  return is_set(s, KEY_ORBIT_MODE);
+}
+
 /* Which number says how long the motion takes. */
 static int check_given(const study *s, const document *d, message *why) {
   const bool even = motion_is(s, "even"), conservative = motion_is(s, "conservative");
   const study_key mover = mover_of(s, KEY_ORBIT_PERIOD);
-  const bool energy = is_set(s, KEY_ORBIT_ENERGY), multiple = is_set(s, KEY_ORBIT_FORCING_PERIODS);
+  const bool energy = gives_energy(s), multiple = is_set(s, KEY_ORBIT_FORCING_PERIODS);
   if (mover != KEY_COUNT && (energy || multiple || !(even || conservative)))
     return document_refuse(d, s->values[mover].node, why,
                            "%s = orbit.period, but %s decides about the period, expected another one",
@@ -292,11 +335,6 @@ static int check_given(const study *s, const document *d, message *why) {
   return 0;
 }
 
-static bool has_obstacle(const study *s, study_key key, size_t particle) {
-  const typed_value *at = &s->values[key];
-  return at->numbers[at->list ? particle : 0] > -INFINITY;
-}
-
 static int check_sequence(const study *s, const document *d, message *why) {
   const typed_value *sequence = &s->values[KEY_ORBIT_SEQUENCE], *times = &s->values[KEY_ORBIT_TIMES];
   if (times->count != sequence->count)
@@ -311,7 +349,7 @@ static int check_sequence(const study *s, const document *d, message *why) {
     const size_t particle = (size_t)sequence->numbers[i];
     if (code)
       return code;
-    if (!has_obstacle(s, KEY_MODEL_FLOOR, particle) && !has_obstacle(s, KEY_MODEL_WALL, particle))
+    if (!check_has_obstacle(s, particle))
       return document_refuse(d, typed_item_node(d, sequence, i), why,
                              "orbit.sequence[%zu] = %zu has no floor or wall to hit, expected a particle with one", i,
                              particle);
@@ -330,28 +368,61 @@ static int check_excited(const study *s, const document *d, message *why) {
   return code;
 }
 
+/* A value of orbit.mode. @param label  "orbit.mode" or "swept orbit.mode" */
+static int check_one_mode(const study *s, const document *d, int node, const char *label, double mode, message *why) {
+  const double particles = first(s, KEY_MODEL_PARTICLES);
+  if (mode < particles)
+    return 0;
+  return document_refuse(d, node, why, "%s = %.0f is out of range, expected a mode from 0 to %.0f", label, mode,
+                         particles - 1);
+}
+
+static int check_mode(const study *s, const document *d, message *why) {
+  const sweep_entry *e = sweep_over(s, KEY_ORBIT_MODE, -1);
+  const int node = check_node_of_key(s, KEY_ORBIT_MODE);
+  if (!branch_from_mode(s))
+    return 0;
+  if (!gives_energy(s))
+    return document_refuse(d, node, why,
+                           "orbit.mode without an energy, which gives its amplitude: expected orbit.energy, or a "
+                           "branch along it");
+  int code = check_one_mode(s, d, node, "orbit.mode", first(s, KEY_ORBIT_MODE), why);
+  for (size_t i = 0; e && i < e->view.points && !code; i++)
+    code = check_one_mode(s, d, sweep_value_node(d, e, i), "swept orbit.mode", e->values[i], why);
+  return code;
+}
+
+static int refuse_two_guesses(const study *s, const document *d, study_key key, bool start, message *why) {
+  return document_refuse(d, check_node_of_key(s, key), why, "%s gives a first guess, and so %s, expected one of them",
+                         schema_row(key)->path, start ? "does the section start" : "do the impacts");
+}
+
 /* One guess to begin with. */
 static int check_guess(const study *s, const document *d, message *why) {
   const source file = {.name = s->name};
   const int start = check_node_of_section(s, d, "start");
   const bool excited = s->values[KEY_ORBIT_EXCITED].count > 0, forced = motion_is(s, "forced");
+  const bool mode = branch_from_mode(s);
   const bool listed = s->values[KEY_ORBIT_AT_START].count + s->values[KEY_ORBIT_AT_HALF].count > 0;
   if (!motion_is(s, "even") && listed)
     return refuse_key(s, d, s->values[KEY_ORBIT_AT_START].count > 0 ? KEY_ORBIT_AT_START : KEY_ORBIT_AT_HALF, why,
                       "expected the impacts in orbit.sequence");
-  if (excited && (start || listed))
-    return document_refuse(d, s->values[KEY_ORBIT_EXCITED].node, why,
-                           "orbit.excited gives a first guess, and so %s, expected one of them",
-                           start ? "does the section start" : "do the impacts");
-  if (!start && !excited && !listed && !forced)
-    return source_refuse(&file, 0, why, "kind: branch has no first guess, expected the section start, orbit.excited%s",
+  if (mode && excited)
+    return document_refuse(d, check_node_of_key(s, KEY_ORBIT_MODE), why,
+                           "orbit.mode gives a first guess, and so does orbit.excited, expected one of them");
+  if ((excited || mode) && (start || listed))
+    return refuse_two_guesses(s, d, mode ? KEY_ORBIT_MODE : KEY_ORBIT_EXCITED, start, why);
+  if (!start && !excited && !mode && !listed && !forced)
+    return source_refuse(&file, 0, why,
+                         "kind: branch has no first guess, expected the section start, orbit.excited, orbit.mode%s",
                          motion_is(s, "even") ? ", orbit.at_start or orbit.at_half" : "");
   return 0;
 }
 
 int branch_check(const study *s, const document *d, message *why) {
-  static int (*const checks[])(const study *, const document *, message *) = {
-      check_range, check_steps, check_model, check_given, check_trace, check_sequence, check_excited, check_guess};
+  static int (*const checks[])(const study *, const document *,
+                               message *) = {check_from,  check_range,    check_steps,   check_model, check_given,
+                                             check_trace, check_sequence, check_excited, check_mode,  check_guess};
   int code = 0;
   for (size_t i = 0; i < sizeof checks / sizeof *checks && !code; i++)
     code = checks[i](s, d, why);

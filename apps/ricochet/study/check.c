@@ -35,20 +35,22 @@ static bool has_orbit(const study *s, const document *d) {
   return study_is_kind(s, "orbits") || check_node_of_section(s, d, "orbit");
 }
 
-/* A branch whose period follows from its force needs none. */
+/* A branch whose period follows from its force, or whose guess is a normal mode, needs none. */
 static bool needs_period(const study *s, const document *d) {
   if (!study_is_kind(s, "branch"))
     return has_orbit(s, d);
   const bool forced = s->values[KEY_ORBIT_MOTION].text && strcmp(s->values[KEY_ORBIT_MOTION].text, "forced") == 0;
-  return !forced && s->values[KEY_ORBIT_FORCING_PERIODS].numbers[0] == -INFINITY;
+  return !forced && !branch_from_mode(s) && s->values[KEY_ORBIT_FORCING_PERIODS].numbers[0] == -INFINITY;
 }
 
 static bool is_needed(const study *s, const document *d, const schema_entry *row) {
-  if (study_restarts(s) && (row == schema_row(KEY_ORBIT_PERIOD) || row == schema_row(KEY_BRANCH_FROM)))
+  if (study_restarts(s) && row == schema_row(KEY_ORBIT_PERIOD))
     return false;
   if (!branch_traces(s) && strncmp(row->path, "branch.trace.", 13) == 0)
     return false;
   if (!row->required || (row == schema_row(KEY_ORBIT_PERIOD) && !needs_period(s, d)))
+    return false;
+  if (row->models && !schema_concerns_model(row, study_model(s)))
     return false;
   return row == schema_row(KEY_KIND) || schema_concerns(row, s->values[KEY_KIND].text);
 }
@@ -74,8 +76,28 @@ static int check_kind(const study *s, const document *d, message *why) {
     if (!node || schema_concerns(row, kind))
       continue;
     char kinds[64];
-    schema_kinds(row, kinds, sizeof kinds);
+    schema_either(row->kinds, kinds, sizeof kinds);
     return document_refuse(d, node, why, "%s is a key of kind: %s, and this is kind: %s", row->path, kinds, kind);
+  }
+  return 0;
+}
+
+/* The type of the model is one that the kind takes, and the keys are of that type. */
+static int check_model(const study *s, const document *d, message *why) {
+  const char *model = study_model(s), *kind = s->values[KEY_KIND].text;
+  const char *taken = schema_word_kinds(schema_row(KEY_MODEL_TYPE), model);
+  char kinds[64];
+  if (taken && !schema_is_among(kind, strlen(kind), taken)) {
+    schema_either(taken, kinds, sizeof kinds);
+    return document_refuse(d, s->values[KEY_MODEL_TYPE].node, why,
+                           "model.type = %s is for kind: %s, and this is kind: %s", model, kinds, kind);
+  }
+  for (int key = 0; key < KEY_COUNT; key++) {
+    const schema_entry *row = schema_row((study_key)key);
+    const int node = check_node_of_key(s, (study_key)key);
+    if (node && !schema_concerns_model(row, model))
+      return document_refuse(d, node, why, "%s is a key of model.type: %s, and this is model.type: %s", row->path,
+                             row->models, model);
   }
   return 0;
 }
@@ -146,7 +168,7 @@ static int check_default(const study *s, const document *d, study_key key, doubl
 
 int check_key_default(const study *s, const document *d, study_key key, message *why) {
   typed_value fallback;
-  if (!typed_default(schema_row(key), &fallback))
+  if (!typed_default(schema_row(key), study_model(s), &fallback))
     return refuse(why, EXIT_RUN, "%s: out of memory", s->name);
   const double number = fallback.numbers[0];
   typed_clear(&fallback);
@@ -156,6 +178,10 @@ int check_key_default(const study *s, const document *d, study_key key, message 
 /* Periodic orbits are those of the linear, conservative chain with rigid floors. */
 static int check_defaults(const study *s, const document *d, message *why) {
   int code = 0;
+  const char *model = study_model(s), *taken = schema_word_kinds(schema_row(KEY_MODEL_TYPE), model);
+  if (taken && !schema_is_among("orbits", strlen("orbits"), taken))
+    return document_refuse(d, s->values[KEY_MODEL_TYPE].node, why,
+                           "model.type = %s, but a start on an orbit needs model.type = chain", model);
   for (int key = 0; key < KEY_COUNT && !code; key++)
     if (schema_row((study_key)key)->orbits_default)
       code = check_key_default(s, d, (study_key)key, why);
@@ -178,10 +204,15 @@ static int compare_impacts(const void *left, const void *right) {
   return a->item < b->item ? -1 : a->item > b->item;
 }
 
-static bool has_floor(const study *s, size_t particle) {
-  const typed_value *obstacle = &s->values[KEY_MODEL_FLOOR];
-  const size_t item = obstacle->list ? particle : 0;
-  return obstacle->numbers[item] > -INFINITY || sweep_over(s, KEY_MODEL_FLOOR, obstacle->list ? (long)particle : -1);
+bool check_has_obstacle(const study *s, size_t particle) {
+  static const study_key sides[] = {KEY_MODEL_FLOOR, KEY_MODEL_WALL};
+  bool has = false;
+  for (size_t i = 0; i < sizeof sides / sizeof *sides; i++) {
+    const typed_value *at = &s->values[sides[i]];
+    const long item = study_item(s, sides[i], particle);
+    has = has || (item >= 0 && (at->numbers[item] > -INFINITY || sweep_over(s, sides[i], at->list ? item : -1)));
+  }
+  return has;
 }
 
 static int refuse_particle(const study *s, const document *d, int node, const char *label, double particle,
@@ -211,10 +242,11 @@ static int collect_impacts(const study *s, const document *d, study_key key, imp
       return code;
     if (sweep_over(s, key, (long)i))
       continue;
-    if (!has_floor(s, (size_t)particle))
-      return document_refuse(
-          d, node, why, "%s[%zu] = %.0f has no floor to hit (model.floor is null there), expected a particle with one",
-          schema_row(key)->path, i, particle);
+    if (!check_has_obstacle(s, (size_t)particle))
+      return document_refuse(d, node, why,
+                             "%s[%zu] = %.0f has no floor or wall to hit (both are null there), expected a particle "
+                             "with one",
+                             schema_row(key)->path, i, particle);
     impacts[(*count)++] = (impact){particle, key, i};
   }
   return 0;
@@ -308,6 +340,8 @@ int study_check(const study *s, const document *d, message *why) {
   int code = check_missing(s, d, why);
   if (!code)
     code = check_kind(s, d, why);
+  if (!code)
+    code = check_model(s, d, why);
   if (!code)
     code = check_start(s, d, why);
   if (!code)

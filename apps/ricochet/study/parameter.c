@@ -73,6 +73,9 @@ int parameter_find(const study *s, const document *d, const parameter_use *use, 
   const schema_entry *row = schema_row(key);
   if (!row->sweep)
     return document_refuse(d, use->node, why, "%s = %s %s: %s", use->label, path, use->done, row->no_sweep);
+  if (study_model(s) && !schema_concerns_model(row, study_model(s)))
+    return document_refuse(d, use->node, why, "%s = %s is a key of model.type: %s, and this is model.type: %s",
+                           use->label, path, row->models, study_model(s));
   *parameter = (study_parameter){.key = key, .item = item};
   if (item >= 0)
     snprintf(parameter->name, sizeof parameter->name, "%s[%ld]", path, item);

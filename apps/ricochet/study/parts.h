@@ -45,6 +45,8 @@ bool study_is_kind(const study *s, const char *kind);
 int branch_read(study *s, const document *d, message *why);
 /** Checks the keys of a branch, and what they make of those of the orbit. */
 int branch_check(const study *s, const document *d, message *why);
+/** Whether a normal mode is its first guess. */
+bool branch_from_mode(const study *s);
 /** Whether curves through its special points are wanted. */
 bool branch_traces(const study *s);
 /** Checks the section `restart`, in place of these. */
@@ -58,6 +60,9 @@ int check_node_of_section(const study *s, const document *d, const char *section
 int check_key_default(const study *s, const document *d, study_key key, message *why);
 /** Refuses element `i` of a list that is no particle of the chain, as "orbit.at_start[2]". */
 int check_particle(const study *s, const document *d, study_key key, size_t i, message *why);
+
+/** Whether a particle has a floor or a wall, at some point of a sweep at least. */
+bool check_has_obstacle(const study *s, size_t particle);
 
 /** Checks what concerns several keys at once: missing keys, lengths of lists, the pattern, swept values. */
 int study_check(const study *s, const document *d, message *why);

@@ -1,6 +1,8 @@
 /* The study-file reference, printed from the schema table. */
 #include "schema.h"
 
+#include <string.h>
+
 #include "study.h"
 
 static void print_default(FILE *out, const schema_entry *row) {
@@ -10,6 +12,8 @@ static void print_default(FILE *out, const schema_entry *row) {
     fprintf(out, "none");
   else
     fprintf(out, "`%s`", row->fallback);
+  if (row->other_models)
+    fprintf(out, "; of %s: `%s`", row->other_models, row->other_fallback);
 }
 
 static void print_rows_head(FILE *out, bool sweepable) {
@@ -25,6 +29,18 @@ static void print_row(FILE *out, const schema_entry *row, const char *name) {
   fprintf(out, " | ");
 }
 
+/* Words that are not for every kind of study. */
+static void print_word_kinds(FILE *out, const schema_entry *row) {
+  const char *word = row->words;
+  for (size_t i = 0; row->word_kinds && *word; i++, word += strcspn(word, "|"), word += *word == '|') {
+    char kinds[64];
+    if (!row->word_kinds[i])
+      continue;
+    schema_either(row->word_kinds[i], kinds, sizeof kinds);
+    fprintf(out, " `%.*s` is for `kind: %s`.", (int)strcspn(word, "|"), word, kinds);
+  }
+}
+
 static void print_key(FILE *out, const schema_entry *row) {
   print_row(out, row, row->path);
   if (row->sweep)
@@ -34,9 +50,12 @@ static void print_key(FILE *out, const schema_entry *row) {
   fprintf(out, " | %s", row->doc);
   if (row->kinds) {
     char kinds[64];
-    schema_kinds(row, kinds, sizeof kinds);
+    schema_either(row->kinds, kinds, sizeof kinds);
     fprintf(out, " For `kind: %s`.", kinds);
   }
+  if (row->models)
+    fprintf(out, " For `model.type: %s`.", row->models);
+  print_word_kinds(out, row);
   if (row->orbits_default)
     fprintf(out, " Orbits need the default.");
   fprintf(out, " |\n");
@@ -58,10 +77,11 @@ static void print_rules(FILE *out) {
       "are\n  those of the linear chain without damping, and need the defaults of the keys that say so.\n"
       "- A branch is a family of periodic motions of any model, followed along one number from a first guess: the "
       "state "
-      "of the\n  section `start`, the particles of `orbit.excited`, the orbit of the linear chain whose impacts "
-      "`orbit.at_start` and\n  `orbit.at_half` name, or, for forced motions, rest; or from a point of an earlier "
-      "result, "
-      "which the section `restart`\n  names. Sweeps repeat it for other values of the other numbers.\n"
+      "of the\n  section `start`, the particles of `orbit.excited`, the normal mode `orbit.mode`, the motion of the "
+      "model's linear part\n  whose impacts `orbit.at_start` and `orbit.at_half` name, or, for forced motions, rest; "
+      "or "
+      "from a point of an earlier\n  result, which the section `restart` names. Sweeps repeat it for other values of "
+      "the other numbers.\n"
       "- `branch.trace` is a section in the section `branch`: `branch: {..., trace: {parameter: model.frequency, low: "
       "1, "
       "high: 2}}`.\n  With it, curves through special points of the branch are followed in two parameters.\n"

@@ -42,16 +42,29 @@ bool schema_is_among(const char *word, size_t length, const char *words) {
   return schema_find_word(word, length, words) >= 0;
 }
 
-void schema_kinds(const schema_entry *entry, char *text, size_t size) {
+void schema_either(const char *words, char *text, size_t size) {
   size_t used = 0;
   *text = 0;
-  for (const char *kind = entry->kinds; *kind && used < size; kind += strcspn(kind, "|"), kind += *kind == '|')
-    used += (size_t)snprintf(text + used, size - used, "%s%.*s", kind == entry->kinds ? "" : " or ",
-                             (int)strcspn(kind, "|"), kind);
+  for (const char *word = words; *word && used < size; word += strcspn(word, "|"), word += *word == '|')
+    used += (size_t)snprintf(text + used, size - used, "%s%.*s", word == words ? "" : " or ", (int)strcspn(word, "|"),
+                             word);
 }
 
 bool schema_concerns(const schema_entry *entry, const char *kind) {
   return !entry->kinds || schema_is_among(kind, strlen(kind), entry->kinds);
+}
+
+bool schema_concerns_model(const schema_entry *entry, const char *model) {
+  return !entry->models || schema_is_among(model, strlen(model), entry->models);
+}
+
+const char *schema_word_kinds(const schema_entry *entry, const char *word) {
+  const long place = schema_find_word(word, strlen(word), entry->words);
+  return entry->word_kinds && place >= 0 ? entry->word_kinds[place] : NULL;
+}
+
+const char *schema_fallback(const schema_entry *entry, const char *model) {
+  return model && schema_is_among(model, strlen(model), entry->other_models) ? entry->other_fallback : entry->fallback;
 }
 
 schema_fit schema_check(const schema_entry *entry, double value) {

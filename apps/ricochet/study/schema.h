@@ -39,6 +39,7 @@ typedef enum study_key {
   KEY_ORBIT_SEQUENCE,
   KEY_ORBIT_TIMES,
   KEY_ORBIT_EXCITED,
+  KEY_ORBIT_MODE,
   KEY_ORBIT_METHOD,
   KEY_ORBIT_STATES,
   KEY_ORBIT_SPECIAL_POINTS,
@@ -102,14 +103,21 @@ typedef struct schema_entry {
   bool list;            /* a list of `type` is allowed */
   bool scalar;          /* a single value is allowed */
   bool null;            /* null is allowed, for a single value and inside a list: read as minus infinity ("none") */
-  bool required;        /* no default; a study needs it, if it concerns its kind (see study_check for exceptions) */
+  bool required;        /* no default; a study needs it, if it concerns its kind and its type of model (see study_check
+                           for exceptions) */
   const char *fallback; /* default as YAML text, "" when absent by default */
   double low, high;     /* range of a number, ends included unless open */
   bool low_open, high_open;
   const char *words;       /* allowed words, "impulse|dense" */
   const char *later_words; /* words of a later version: refused with "not in this version" */
-  const char *kinds;       /* kinds of study that the key is for, "orbits|trajectory"; NULL: all */
+  const char *const
+      *word_kinds;          /* kinds of study that each of `words` is for, NULL among them: all; NULL: all for all */
+  const char *kinds;        /* kinds of study that the key is for, "orbits|trajectory"; NULL: all */
+  const char *models;       /* types of model that the key is for, "chain|duffing_chain"; NULL: all */
+  const char *other_models; /* types of model whose default is `other_fallback`; NULL: none */
+  const char *other_fallback;
   bool per_particle;       /* a list has one element per particle */
+  const char *last_models; /* types of model of which a single value is that of the last particle; NULL: none */
   bool orbits_default;     /* periodic orbits are computed for the default only */
   bool sweep;              /* numbers only: can be the parameter of a sweep */
   const char *no_sweep;    /* why it cannot be swept, for the refusal */
@@ -154,10 +162,16 @@ void schema_nearest(const char *path, char *near, size_t size);
 /** The same among the keys that can be swept. */
 void schema_nearest_parameter(const char *path, char *near, size_t size);
 
-/** The kinds that a key is for, in words: "trajectory or branch"; of a key with `kinds`. */
-void schema_kinds(const schema_entry *entry, char *text, size_t size);
+/** Writes "a|b|c" as "a or b or c". */
+void schema_either(const char *words, char *text, size_t size);
 /** Whether a key is for studies of this kind. */
 bool schema_concerns(const schema_entry *entry, const char *kind);
+/** Whether a key is for models of this type. */
+bool schema_concerns_model(const schema_entry *entry, const char *model);
+/** Kinds of study that a word of the entry is for, NULL: all. */
+const char *schema_word_kinds(const schema_entry *entry, const char *word);
+/** The default for models of this type as YAML text; NULL and "" as in the entry. @param model  may be NULL */
+const char *schema_fallback(const schema_entry *entry, const char *model);
 /** Place of a word in "a|b|c", from 0; -1 when it is none of them, as of NULL. @param length  of the word */
 long schema_find_word(const char *word, size_t length, const char *words);
 /** Whether it is one of them. */

@@ -14,13 +14,17 @@ static const schema_entry rows[KEY_COUNT - KEY_BRANCH_PARAMETER] = {
          OF_BRANCH,
          .no_sweep = "it is text, not a number",
          .doc = "What the branch is followed along: a number of `model`, or an element of a list there, `orbit.period` "
-                "or `orbit.energy`. It may be left out of its section."},
+                "or `orbit.energy`. Where `branch.from` is given it may be left out of its section."},
     [KEY_BRANCH_FROM - KEY_BRANCH_PARAMETER] = {.path = "branch.from",
                                                 NUMBER,
-                                                .required = true,
+                                                .null = true,
+                                                .fallback = "null",
                                                 ANY,
                                                 OF_BRANCH,
-                                                .doc = "Value of the parameter at which the branch starts."},
+                                                .doc =
+                                                    "Value of the parameter at which the branch starts; null: the "
+                                                    "study's own value of it, of orbit.energy without one the energy "
+                                                    "of the motion of the period `orbit.period`."},
     [KEY_BRANCH_TO - KEY_BRANCH_PARAMETER] =
         {.path = "branch.to",
          NUMBER,

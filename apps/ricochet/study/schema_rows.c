@@ -3,6 +3,14 @@
 
 #include "study.h"
 
+/* A number of the springs that a model has one of per particle; of those that couple them in a chain. */
+#define SPRING                                                                                                         \
+  .type = VALUE_NUMBER, .scalar = true, .list = true, .per_particle = true, .orbits_default = true, .sweep = true
+#define LINK .type = VALUE_NUMBER, .scalar = true, .models = "chain", .orbits_default = true, .sweep = true
+
+/* Kinds of study that take each type of model. */
+static const char *const type_kinds[] = {NULL, "trajectory|branch"};
+
 static const schema_entry rows[KEY_BRANCH_PARAMETER] = {
     [KEY_KIND] = {.path = "kind",
                   WORD,
@@ -21,10 +29,12 @@ static const schema_entry rows[KEY_BRANCH_PARAMETER] = {
     [KEY_MODEL_TYPE] = {.path = "model.type",
                         WORD,
                         .required = true,
-                        .words = "chain",
-                        .later_words = "duffing_chain|oscillator|grazing_map",
+                        .words = "chain|duffing_chain",
+                        .word_kinds = type_kinds,
+                        .later_words = "oscillator|grazing_map",
                         .doc = "`chain`: particles on springs of their own, of unit mass and stiffness by default, "
-                               "coupled to their neighbours."},
+                               "coupled to their neighbours; `duffing_chain`: particles in series, joined by springs, "
+                               "the first one to the ground, without a spring behind the last."},
     [KEY_MODEL_PARTICLES] = {.path = "model.particles",
                              .type = VALUE_INTEGER,
                              .scalar = true,
@@ -37,6 +47,7 @@ static const schema_entry rows[KEY_BRANCH_PARAMETER] = {
                         WORD,
                         .fallback = "periodic",
                         .words = "periodic|fixed|free",
+                        .models = "chain",
                         .doc = "`periodic`: a ring; `fixed`: the end particles are coupled to walls; `free`: they are "
                                "not."},
     [KEY_MODEL_GAMMA] = {.path = "model.gamma",
@@ -45,6 +56,7 @@ static const schema_entry rows[KEY_BRANCH_PARAMETER] = {
                          .required = true,
                          .low = 0,
                          .high = INFINITY,
+                         .models = "chain",
                          .sweep = true,
                          .doc = "Stiffness of the coupling springs."},
     [KEY_MODEL_FLOOR] = {.path = "model.floor",
@@ -54,6 +66,8 @@ static const schema_entry rows[KEY_BRANCH_PARAMETER] = {
                          .null = true,
                          .per_particle = true,
                          .fallback = "-1",
+                         .other_models = "duffing_chain",
+                         .other_fallback = "null",
                          ANY,
                          .sweep = true,
                          .doc = "Displacement at which a particle hits its obstacle: one number for all, or one per "
@@ -82,65 +96,39 @@ static const schema_entry rows[KEY_BRANCH_PARAMETER] = {
                         .per_particle = true,
                         .sweep = true,
                         .doc = "Mass of a particle: one number for all, or one per particle."},
-    [KEY_MODEL_STIFFNESS] = {.path = "model.stiffness",
-                             .type = VALUE_NUMBER,
-                             .scalar = true,
-                             .fallback = "1",
-                             ANY,
-                             .orbits_default = true,
-                             .sweep = true,
-                             .doc = "Linear stiffness of the on-site spring of every particle."},
+    [KEY_MODEL_STIFFNESS] =
+        {.path = "model.stiffness",
+         SPRING,
+         .fallback = "1",
+         ANY,
+         .doc = "Linear stiffness of the springs: of a chain the on-site spring of every particle; of a Duffing chain "
+                "the one before it, which joins it to the particle before, spring 0 particle 0 to the ground."},
     [KEY_MODEL_QUADRATIC] = {.path = "model.quadratic",
-                             .type = VALUE_NUMBER,
-                             .scalar = true,
+                             SPRING,
                              .fallback = "0",
                              ANY,
-                             .orbits_default = true,
-                             .sweep = true,
-                             .doc = "Quadratic term of the on-site springs: the force at displacement q is stiffness q "
-                                    "+ quadratic q^2 + cubic q^3."},
-    [KEY_MODEL_CUBIC] = {.path = "model.cubic",
-                         .type = VALUE_NUMBER,
-                         .scalar = true,
-                         .fallback = "0",
-                         ANY,
-                         .orbits_default = true,
-                         .sweep = true,
-                         .doc = "Cubic term of the on-site springs."},
+                             .doc = "Quadratic term of these springs: the force at extension x is stiffness x "
+                                    "+ quadratic x^2 + cubic x^3."},
+    [KEY_MODEL_CUBIC] = {.path = "model.cubic", SPRING, .fallback = "0", ANY, .doc = "Cubic term of these springs."},
     [KEY_MODEL_DAMPING] = {.path = "model.damping",
-                           .type = VALUE_NUMBER,
-                           .scalar = true,
+                           SPRING,
                            .fallback = "0",
                            .low = 0,
                            .high = INFINITY,
-                           .orbits_default = true,
-                           .sweep = true,
-                           .doc = "Damping of every particle: force per velocity."},
+                           .doc = "Damping of these springs: force per rate of extension."},
     [KEY_MODEL_LINK_QUADRATIC] = {.path = "model.link_quadratic",
-                                  .type = VALUE_NUMBER,
-                                  .scalar = true,
+                                  LINK,
                                   .fallback = "0",
                                   ANY,
-                                  .orbits_default = true,
-                                  .sweep = true,
                                   .doc = "Quadratic term of the coupling springs: the force at extension d is gamma d "
                                          "+ link_quadratic d^2 + link_cubic d^3."},
-    [KEY_MODEL_LINK_CUBIC] = {.path = "model.link_cubic",
-                              .type = VALUE_NUMBER,
-                              .scalar = true,
-                              .fallback = "0",
-                              ANY,
-                              .orbits_default = true,
-                              .sweep = true,
-                              .doc = "Cubic term of the coupling springs."},
+    [KEY_MODEL_LINK_CUBIC] =
+        {.path = "model.link_cubic", LINK, .fallback = "0", ANY, .doc = "Cubic term of the coupling springs."},
     [KEY_MODEL_LINK_DAMPING] = {.path = "model.link_damping",
-                                .type = VALUE_NUMBER,
-                                .scalar = true,
+                                LINK,
                                 .fallback = "0",
                                 .low = 0,
                                 .high = INFINITY,
-                                .orbits_default = true,
-                                .sweep = true,
                                 .doc = "Damping of the coupling springs: force per rate of extension."},
     [KEY_MODEL_WALL] = {.path = "model.wall",
                         .type = VALUE_NUMBER,
@@ -151,9 +139,10 @@ static const schema_entry rows[KEY_BRANCH_PARAMETER] = {
                         .null = true,
                         .list = true,
                         .per_particle = true,
+                        .last_models = "duffing_chain",
                         .sweep = true,
-                        .doc = "Displacement at which a particle hits an obstacle above it: one number for all, or one "
-                               "per particle; null is no obstacle."},
+                        .doc = "Displacement at which a particle hits an obstacle above it: one number for all, of a "
+                               "Duffing chain for the last one, or one per particle; null is no obstacle."},
     [KEY_MODEL_HERTZ] = {.path = "model.hertz",
                          .type = VALUE_NUMBER,
                          .scalar = true,
@@ -204,7 +193,8 @@ static const schema_entry rows[KEY_BRANCH_PARAMETER] = {
                           .sweep = true,
                           .doc = "Period T of the orbit; a particle alone has the period 2 pi. In a trajectory, the "
                                  "section orbit gives the start: the orbit's state just after t = 0. In a branch, a "
-                                 "first guess where the motion or its energy decides about the period."},
+                                 "first guess where the motion or its energy decides about the period, and with "
+                                 "`orbit.mode` no guess is needed."},
     [KEY_ORBIT_AT_START] = {.path = "orbit.at_start",
                             .type = VALUE_INTEGER,
                             .list = true,
@@ -212,8 +202,8 @@ static const schema_entry rows[KEY_BRANCH_PARAMETER] = {
                             .low = 0,
                             .high = INFINITY,
                             .sweep = true,
-                            .doc = "Particles that hit at t = 0 modulo T; with Hertz contacts, in a branch, that press "
-                                   "their floor then."},
+                            .doc = "Particles that hit at t = 0 modulo T their floor, or in a branch their wall where "
+                                   "they have no floor; with Hertz contacts, that press it then."},
     [KEY_ORBIT_AT_HALF] = {.path = "orbit.at_half",
                            .type = VALUE_INTEGER,
                            .list = true,
@@ -283,6 +273,19 @@ static const schema_entry rows[KEY_BRANCH_PARAMETER] = {
                            .doc = "Particles that swing in the first guess of a motion without impacts: at t = 0 at "
                                   "the amplitude at which one alone, with its cubic spring, has the period T; the "
                                   "others are at rest."},
+    [KEY_ORBIT_MODE] = {.path = "orbit.mode",
+                        .type = VALUE_INTEGER,
+                        .scalar = true,
+                        .null = true,
+                        .fallback = "null",
+                        .low = 0,
+                        .high = INFINITY,
+                        .kinds = "branch",
+                        .sweep = true,
+                        .doc =
+                            "First guess of a motion whose energy is given: the normal mode of this place, from 0 in "
+                            "the order of frequencies, of the linear part of the model, at rest at t = 0, with its "
+                            "period and the amplitude of that energy; null: another guess."},
     [KEY_ORBIT_METHOD] = {.path = "orbit.method",
                           WORD,
                           .kinds = "orbits",

@@ -78,11 +78,21 @@ static int read_ahead(study *s, const document *d, int mapping, const char *name
   return read_key(s, d, pair->key, pair->value, key, why);
 }
 
+/* Defaults of the keys that are not read yet, as the type of the model has them. */
+static int set_defaults(study *s, message *why) {
+  for (int key = 0; key < KEY_COUNT; key++)
+    if (!s->values[key].node && !typed_default(schema_row((study_key)key), study_model(s), &s->values[key]))
+      return refuse(why, EXIT_RUN, "%s: out of memory", s->name);
+  return 0;
+}
+
 /* The kind and the model's type come first: under one of a later version, the other keys are not unknown. */
 static int read_keys(study *s, const document *d, message *why) {
   int code = read_ahead(s, d, DOCUMENT_ROOT, "kind", KEY_KIND, why);
   if (!code)
     code = read_ahead(s, d, document_find(d, DOCUMENT_ROOT, "model"), "type", KEY_MODEL_TYPE, why);
+  if (!code)
+    code = set_defaults(s, why);
   const yaml_node_t *root = document_node(d, DOCUMENT_ROOT);
   for (const yaml_node_pair_t *pair = root->data.mapping.pairs.start; pair < root->data.mapping.pairs.top && !code;
        pair++)
@@ -101,9 +111,6 @@ static int check_root(const document *d, message *why) {
 }
 
 static int read_tree(study *s, const document *d, message *why) {
-  for (int key = 0; key < KEY_COUNT; key++)
-    if (!typed_default(schema_row((study_key)key), &s->values[key]))
-      return refuse(why, EXIT_RUN, "%s: out of memory", s->name);
   int code = read_keys(s, d, why);
   if (!code)
     code = sweep_read(s, d, document_find(d, DOCUMENT_ROOT, "sweep"), why);
@@ -182,6 +189,18 @@ const char *study_kind(const study *s) {
 
 bool study_is_kind(const study *s, const char *kind) {
   return s->values[KEY_KIND].text && strcmp(s->values[KEY_KIND].text, kind) == 0;
+}
+
+const char *study_model(const study *s) {
+  return s->values[KEY_MODEL_TYPE].text;
+}
+
+long study_item(const study *s, study_key key, size_t particle) {
+  const char *alone = schema_row(key)->last_models, *model = study_model(s);
+  if (s->values[key].list)
+    return (long)particle;
+  const bool last = (double)particle + 1 == s->values[KEY_MODEL_PARTICLES].numbers[0];
+  return last || !schema_is_among(model, strlen(model), alone) ? 0 : -1;
 }
 
 const char *study_name(const study *s) {

@@ -56,6 +56,13 @@ void study_destroy(study **s);
 /** Kind of the study, a word of the schema: "orbits". */
 const char *study_kind(const study *s);
 
+/** Type of its model, a word of the schema: "chain". */
+const char *study_model(const study *s);
+
+/** Place of the number of a particle in the value of a key: the particle's own in a list, that of a single number; -1
+ *  where the single number is of another particle. Of keys with a value. */
+long study_item(const study *s, study_key key, size_t particle);
+
 /** How messages call this study (the `name` it was parsed under). */
 const char *study_name(const study *s);
 
@@ -106,6 +113,9 @@ void study_values_at(study_values *v, uint64_t task);
 
 /** Moves the parameter that a branch is followed along, which starts at `branch.from`. */
 void study_values_follow(study_values *v, double value);
+/** Sets where the branch of this task starts, `branch.from` and the parameter, where the study leaves it to the first
+ *  motion: `branch.from` reads as minus infinity until then. */
+void study_values_begin(study_values *v, double value);
 /** Moves the second parameter of curves, which starts at the study's own value of it. */
 void study_values_trace(study_values *v, double value);
 
@@ -118,6 +128,8 @@ size_t value_count(const study_values *v, study_key key);
 /** Element `i` of a number, integer or flag value, scalar or list; null reads as -INFINITY; an element of a list of
  *  words as its place among those of the row. */
 double value_number(const study_values *v, study_key key, size_t i);
+/** The number of a particle: its own in a list, or the one value; minus infinity where that is of another particle. */
+double value_of_particle(const study_values *v, study_key key, size_t particle);
 bool value_flag(const study_values *v, study_key key);
 /** Word or text; "" when absent. */
 const char *value_word(const study_values *v, study_key key);

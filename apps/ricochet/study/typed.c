@@ -147,13 +147,13 @@ int typed_read(const document *d, int key, int node, const schema_entry *row, co
 }
 
 /* The default of a list: "[]", or words as in "[fold, grazing]". */
-static bool default_list(const schema_entry *row, typed_value *value) {
+static bool default_list(const schema_entry *row, const char *fallback, typed_value *value) {
   size_t most = 1;
-  for (const char *c = row->fallback; *c; c++)
+  for (const char *c = fallback; *c; c++)
     most += *c == ',';
   value->list = true;
   value->numbers = calloc(most + 1, sizeof *value->numbers);
-  for (const char *word = row->fallback + 1; value->numbers && *word && *word != ']'; word += strspn(word, ", ")) {
+  for (const char *word = fallback + 1; value->numbers && *word && *word != ']'; word += strspn(word, ", ")) {
     const size_t length = strcspn(word, ",]");
     value->numbers[value->count++] = (double)schema_find_word(word, length, row->words);
     word += length;
@@ -161,25 +161,26 @@ static bool default_list(const schema_entry *row, typed_value *value) {
   return value->numbers != NULL;
 }
 
-bool typed_default(const schema_entry *row, typed_value *value) {
+bool typed_default(const schema_entry *row, const char *model, typed_value *value) {
+  const char *fallback = schema_fallback(row, model);
   *value = (typed_value){0};
-  if (row->required || !row->fallback || !*row->fallback)
+  if (row->required || !fallback || !*fallback)
     return true;
   value->present = true;
-  if (*row->fallback == '[')
-    return default_list(row, value);
+  if (*fallback == '[')
+    return default_list(row, fallback, value);
   value->count = 1;
   if (row->type == VALUE_WORD || row->type == VALUE_TEXT)
-    return (value->text = strdup(row->fallback)) != NULL;
+    return (value->text = strdup(fallback)) != NULL;
   value->numbers = calloc(value->count + 1, sizeof *value->numbers);
   if (!value->numbers)
     return false;
   if (row->type == VALUE_FLAG)
-    value->numbers[0] = strcmp(row->fallback, "true") == 0;
-  else if (strcmp(row->fallback, "null") == 0)
+    value->numbers[0] = strcmp(fallback, "true") == 0;
+  else if (strcmp(fallback, "null") == 0)
     value->numbers[0] = -INFINITY;
   else
-    number_read(row->fallback, strlen(row->fallback), &value->numbers[0]);
+    number_read(fallback, strlen(fallback), &value->numbers[0]);
   return true;
 }
 

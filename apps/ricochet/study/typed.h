@@ -25,8 +25,9 @@ typedef struct typed_value {
 int typed_read(const document *d, int key, int node, const schema_entry *row, const char *label, typed_value *value,
                message *why);
 
-/** The default of a row, absent where there is none. False: out of memory. */
-bool typed_default(const schema_entry *row, typed_value *value);
+/** The default of a row, absent where there is none. False: out of memory.
+ *  @param model  type of the model, NULL where the study does not say it */
+bool typed_default(const schema_entry *row, const char *model, typed_value *value);
 void typed_clear(typed_value *value);
 
 /** Node of element `i` of a value that was given. */

@@ -1,3 +1,4 @@
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -27,9 +28,9 @@ static bool copy_varied(study_values *v, study_key key) {
   return true;
 }
 
-/* A branch that restarts may not say yet where it begins. */
+/* The parameter of a branch that restarts may have no value yet. */
 static bool follows(const study *s) {
-  return s->followed.key != KEY_COUNT && s->values[KEY_BRANCH_FROM].present;
+  return s->followed.key != KEY_COUNT && s->values[s->followed.key].present;
 }
 
 /* The same of a period that it takes from there. */
@@ -49,7 +50,8 @@ study_values *study_values_create(const study *s) {
       study_values_destroy(&v);
       return NULL;
     }
-  if ((follows(s) && !copy_varied(v, s->followed.key)) || (traces(s) && !copy_varied(v, s->traced.key)))
+  if ((follows(s) && !(copy_varied(v, s->followed.key) && copy_varied(v, KEY_BRANCH_FROM))) ||
+      (traces(s) && !copy_varied(v, s->traced.key)))
     study_values_destroy(&v);
   if (v)
     study_values_at(v, 0);
@@ -71,13 +73,18 @@ void study_values_at(study_values *v, uint64_t task) {
     v->copies[sweep->key][place_of(sweep->item)] = study_sweep_value(v->s, i, task);
   }
   if (follows(v->s))
-    study_values_follow(v, v->s->values[KEY_BRANCH_FROM].numbers[0]);
+    study_values_begin(v, v->s->values[KEY_BRANCH_FROM].numbers[0]);
   if (traces(v->s))
     study_values_trace(v, v->s->values[v->s->traced.key].numbers[place_of(v->s->traced.item)]);
 }
 
 void study_values_follow(study_values *v, double value) {
   v->copies[v->s->followed.key][place_of(v->s->followed.item)] = value;
+}
+
+void study_values_begin(study_values *v, double value) {
+  v->copies[KEY_BRANCH_FROM][0] = value;
+  study_values_follow(v, value);
 }
 
 void study_values_trace(study_values *v, double value) {
@@ -95,6 +102,10 @@ size_t value_count(const study_values *v, study_key key) {
 }
 double value_number(const study_values *v, study_key key, size_t i) {
   return v->numbers[key][i];
+}
+double value_of_particle(const study_values *v, study_key key, size_t particle) {
+  const long item = study_item(v->s, key, particle);
+  return item < 0 ? -INFINITY : v->numbers[key][item];
 }
 bool value_flag(const study_values *v, study_key key) {
   return v->numbers[key][0] != 0;

@@ -93,12 +93,22 @@ static ric_status note_unborn(const kind_plan *plan, records *tails, ric_status 
   return branch_put_unborn(plan, tails, outcome, result->reason);
 }
 
+/* The first guess, and where the study does not say where its branch starts, the energy at which it does. */
+static ric_status begin(worker *w, ric_error *error) {
+  double energy = 0;
+  RIC_TRY(branch_guess_find(&w->guess, &w->family, w->from_state, error));
+  if (w->family.family)
+    return RIC_OK;
+  RIC_TRY(branch_guess_settle(&w->guess, &w->family, &energy, error));
+  return branch_family_begin(&w->family, energy, error);
+}
+
 static ric_status follow(worker *w, const kind_plan *plan, records *tails, branch_result *result) {
   ric_error error = {0};
   ric_status status = branch_family_open(&w->family, w->poll, &error);
   if (status != RIC_OK)
     return note_unborn(plan, tails, status, &error, BRANCH_REFUSED, result);
-  status = branch_guess_find(&w->guess, w->values, w->from_state, w->poll, &error);
+  status = begin(w, &error);
   if (status != RIC_OK)
     return note_unborn(plan, tails, status, &error, BRANCH_FAILED_START, result);
   return branch_walk(&w->family, &w->guess, plan, tails, result);

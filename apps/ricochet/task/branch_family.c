@@ -111,6 +111,7 @@ int branch_family_init(branch_family *b, const study *s, study_values *v) {
 
 void branch_family_close(branch_family *b) {
   ric_family_destroy(&b->family);
+  ric_shooting_destroy(&b->first);
   ric_system_destroy(&b->system);
 }
 
@@ -124,12 +125,12 @@ void branch_family_clear(branch_family *b) {
 
 /* --- the problem --- */
 
-/* Obstacles of a list of particles: their floors, or where `or_wall` says so their walls if they have no floor. */
-static ric_status read_hits(const branch_family *b, study_key key, bool or_wall, size_t *hits, ric_error *error) {
+/* Obstacles of a list of particles: their floors, or their walls where they have no floor. */
+static ric_status read_hits(const branch_family *b, study_key key, size_t *hits, ric_error *error) {
   for (size_t i = 0; i < value_count(b->values, key); i++) {
     const size_t particle = (size_t)value_number(b->values, key, i);
     hits[i] = lattice_model_obstacle(&b->model, particle, +1);
-    if (hits[i] == SIZE_MAX && or_wall)
+    if (hits[i] == SIZE_MAX)
       hits[i] = lattice_model_obstacle(&b->model, particle, -1);
     if (hits[i] == SIZE_MAX)
       return ric_fail(error, RIC_EINVAL, "particle %zu has no obstacle to hit", particle);
@@ -142,32 +143,42 @@ static bool is_compliant(const study_values *v) {
   return value_number(v, KEY_MODEL_HERTZ, 0) > 0;
 }
 
-static ric_status describe(branch_family *b, ric_family_problem *problem, ric_error *error) {
+static ric_status read_impacts(branch_family *b, ric_error *error) {
   const study_values *v = b->values;
-  const bool jumps = !is_compliant(v);
   const size_t starts = value_count(v, KEY_ORBIT_AT_START), halves = value_count(v, KEY_ORBIT_AT_HALF);
-  RIC_TRY(read_hits(b, KEY_ORBIT_AT_START, false, b->hits, error));
-  RIC_TRY(read_hits(b, KEY_ORBIT_AT_HALF, false, b->hits + starts, error));
-  RIC_TRY(read_hits(b, KEY_ORBIT_SEQUENCE, true, b->hits + starts + halves, error));
+  RIC_TRY(read_hits(b, KEY_ORBIT_AT_START, b->hits, error));
+  RIC_TRY(read_hits(b, KEY_ORBIT_AT_HALF, b->hits + starts, error));
+  RIC_TRY(read_hits(b, KEY_ORBIT_SEQUENCE, b->hits + starts + halves, error));
   for (size_t i = 0; i < value_count(v, KEY_ORBIT_TIMES); i++)
     b->times[i] = value_number(v, KEY_ORBIT_TIMES, i);
-  *problem = (ric_family_problem){.system = b->system,
-                                  .motion = {.kind = motion_of(v),
-                                             .energy_given = branch_family_gives_energy(v),
-                                             .at_start = b->hits,
-                                             .start_count = jumps ? starts : 0,
-                                             .at_half = b->hits + starts,
-                                             .half_count = jumps ? halves : 0,
-                                             .sequence = b->hits + starts + halves,
-                                             .count = jumps ? value_count(v, KEY_ORBIT_SEQUENCE) : 0,
-                                             .flow = ric_flow_options_default(),
-                                             .poll = b->poll},
-                                  .set = set,
-                                  .user = b,
-                                  .parameters = b->traced ? 2 : 1,
-                                  .second = second_of(b),
-                                  .given = given_of(v)};
   return RIC_OK;
+}
+
+ric_shooting_problem branch_family_motion(const branch_family *b, bool impacts) {
+  const study_values *v = b->values;
+  const size_t starts = value_count(v, KEY_ORBIT_AT_START), halves = value_count(v, KEY_ORBIT_AT_HALF);
+  return (ric_shooting_problem){.kind = motion_of(v),
+                                .at_start = b->hits,
+                                .start_count = impacts ? starts : 0,
+                                .at_half = b->hits + starts,
+                                .half_count = impacts ? halves : 0,
+                                .sequence = b->hits + starts + halves,
+                                .count = impacts ? value_count(v, KEY_ORBIT_SEQUENCE) : 0,
+                                .flow = ric_flow_options_default(),
+                                .poll = b->poll};
+}
+
+static ric_family_problem describe(branch_family *b) {
+  const study_values *v = b->values;
+  ric_family_problem problem = {.system = b->system,
+                                .motion = branch_family_motion(b, !is_compliant(v)),
+                                .set = set,
+                                .user = b,
+                                .parameters = b->traced ? 2 : 1,
+                                .second = second_of(b),
+                                .given = given_of(v)};
+  problem.motion.energy_given = branch_family_gives_energy(v);
+  return problem;
 }
 
 static double bound(const branch_family *b, study_key key, double fallback) {
@@ -217,14 +228,29 @@ ric_curve_options branch_family_curve_options(const branch_family *b, int direct
   return o;
 }
 
-ric_status branch_family_open(branch_family *b, ric_poll poll, ric_error *error) {
-  ric_family_problem problem;
-  b->poll = poll;
+static ric_status make_family(branch_family *b, ric_error *error) {
+  const ric_family_problem problem = describe(b);
   const ric_family_options options = options_of(b);
+  return ric_family_create(&problem, &options, &b->family, error);
+}
+
+ric_status branch_family_open(branch_family *b, ric_poll poll, ric_error *error) {
+  b->poll = poll;
   lattice_model_read(&b->model, b->values);
   RIC_TRY(ric_system_create_lattice(&b->model.lattice, b->model.obstacles, b->model.obstacle_count, &b->system, error));
-  RIC_TRY(describe(b, &problem, error));
-  return ric_family_create(&problem, &options, &b->family, error);
+  RIC_TRY(read_impacts(b, error));
+  if (value_number(b->values, KEY_BRANCH_FROM, 0) > -INFINITY)
+    return make_family(b, error);
+  const ric_shooting_problem motion = branch_family_motion(b, !is_compliant(b->values));
+  return ric_shooting_create(b->system, &motion, &b->first, error);
+}
+
+ric_status branch_family_begin(branch_family *b, double energy, ric_error *error) {
+  if (b->log && !(energy > 0))
+    return ric_fail(error, RIC_EINVAL, "the branch would start at the energy %g, expected a number > 0 with scale: log",
+                    energy);
+  study_values_begin(b->values, energy);
+  return make_family(b, error);
 }
 
 /* Matrices of the unknowns, of which every arc of a motion that is not even brings a state, tangent vectors, and

@@ -16,17 +16,25 @@ typedef struct branch_family {
   size_t *hits;  /* obstacles of orbit.at_start, at_half and sequence, one list after the other */
   double *times; /* of the sequence */
   ric_family *family;
+  ric_shooting *first; /* of the motion at whose energy the branch starts; NULL where the study says where it does */
 } branch_family;
 
 /** Makes room for the values. @returns 0, or -1 when out of memory. */
 int branch_family_init(branch_family *b, const study *s, study_values *v);
 void branch_family_clear(branch_family *b);
 
-/** The system and the family of the present task, at the start of the branch.
+/** The system of the present task, and its family, at the start of the branch; where the study leaves the start to the
+ *  motion of the period, the equations of that one in place of the family.
  *  @returns as ric_family_create, RIC_EINVAL for impacts without an obstacle */
 ric_status branch_family_open(branch_family *b, ric_poll poll, ric_error *error);
-/** Destroys both. */
+/** The family, at the energy of that motion. @returns as ric_family_create, RIC_EINVAL for one that has no logarithm */
+ric_status branch_family_begin(branch_family *b, double energy, ric_error *error);
+/** Destroys them. */
 void branch_family_close(branch_family *b);
+
+/** The task's motions with the period given, as problems on its obstacles; arrays are those of the family.
+ *  @param impacts  with those of the study; else, as with Hertz contacts, without any */
+ric_shooting_problem branch_family_motion(const branch_family *b, bool impacts);
 
 /** The curve's parameter for a value of the study's, and back. */
 double branch_family_parameter(const branch_family *b, double value);

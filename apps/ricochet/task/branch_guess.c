@@ -4,8 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "chain_model.h"
-
 static const double pi = 3.14159265358979323846;
 
 int branch_guess_init(branch_guess *g, size_t particles) {
@@ -24,89 +22,127 @@ static size_t particles_of(const study_values *v) {
 }
 
 /* Frequency of a particle alone without its nonlinear terms; 1 where it has none. */
-static double frequency_alone(const study_values *v) {
-  const double square = value_number(v, KEY_MODEL_STIFFNESS, 0) / lattice_model_value(v, KEY_MODEL_MASS, 0);
+static double frequency_alone(const study_values *v, size_t particle) {
+  const double square =
+      value_of_particle(v, KEY_MODEL_STIFFNESS, particle) / value_of_particle(v, KEY_MODEL_MASS, particle);
   return square > 0 ? sqrt(square) : 1;
 }
 
 static void take_state(branch_guess *g, const study_values *v) {
   for (size_t i = 0; i < particles_of(v); i++) {
-    g->q[i] = lattice_model_value(v, KEY_START_Q, i);
-    g->v[i] = lattice_model_value(v, KEY_START_V, i);
+    g->q[i] = value_of_particle(v, KEY_START_Q, i);
+    g->v[i] = value_of_particle(v, KEY_START_V, i);
   }
 }
 
 /* q'' + w^2 q + c q^3 = 0 has the frequency w (1 + 3/8 c a^2 / w^2) at small amplitudes a. */
-static ric_status excite(branch_guess *g, const study_values *v, ric_error *error) {
-  const double w = frequency_alone(v), cubic = value_number(v, KEY_MODEL_CUBIC, 0) / (w * w);
-  const double square = 8.0 / 3 * (1 - w * g->period / (2 * pi)) / cubic;
+static ric_status swing(const study_values *v, double period, size_t particle, double *amplitude, ric_error *error) {
+  const double w = frequency_alone(v, particle), cubic = value_of_particle(v, KEY_MODEL_CUBIC, particle);
+  const double square = 8.0 / 3 * (1 - w * period / (2 * pi)) * (w * w) / cubic;
   if (!(square > 0 && square < INFINITY))
     return ric_fail(error, RIC_EINVAL,
-                    "a particle alone has the period %.6g at no amplitude (model.cubic = %g; linear: %.6g)", g->period,
-                    value_number(v, KEY_MODEL_CUBIC, 0), 2 * pi / w);
-  for (size_t i = 0; i < value_count(v, KEY_ORBIT_EXCITED); i++)
-    g->q[(size_t)value_number(v, KEY_ORBIT_EXCITED, i)] = sqrt(square);
+                    "a particle alone has the period %.6g at no amplitude (model.cubic = %g; linear: %.6g)", period,
+                    cubic, 2 * pi / w);
+  *amplitude = sqrt(square);
   return RIC_OK;
 }
+
+static ric_status excite(branch_guess *g, const study_values *v, ric_error *error) {
+  for (size_t k = 0; k < value_count(v, KEY_ORBIT_EXCITED); k++) {
+    const size_t i = (size_t)value_number(v, KEY_ORBIT_EXCITED, k);
+    RIC_TRY(swing(v, g->period, i, &g->q[i], error));
+  }
+  return RIC_OK;
+}
+
+/* --- normal modes --- */
+
+/* At rest at its turning point: w^2 a^2 / 2 is the energy of a mode with the amplitude a in normal coordinates. */
+static ric_status take_mode(branch_guess *g, const branch_family *b, ric_error *error) {
+  const size_t n = particles_of(b->values), mode = (size_t)value_number(b->values, KEY_ORBIT_MODE, 0);
+  const double energy = value_number(b->values, KEY_ORBIT_ENERGY, 0);
+  double *frequency = calloc(n, sizeof *frequency), *shape = calloc(n * n, sizeof *shape);
+  ric_status status = frequency && shape ? ric_normal_modes(b->system, frequency, shape, error)
+                                         : ric_fail(error, RIC_ENOMEM, "no memory for the modes of %zu particles", n);
+  const double w = status == RIC_OK ? frequency[mode] : 0;
+  if (status == RIC_OK && !(energy > 0 && w > 0))
+    status = ric_fail(error, RIC_EINVAL,
+                      "no first guess: mode %zu has the frequency %g, and no motion of the energy %g", mode, w, energy);
+  for (size_t i = 0; i < n && status == RIC_OK; i++)
+    g->q[i] = sqrt(2 * energy) / w * shape[mode * n + i];
+  if (status == RIC_OK)
+    g->period = 2 * pi / w;
+  free(frequency);
+  free(shape);
+  return status;
+}
+
+/* --- motions of the linear part --- */
 
 /* Depth at which the work of Hertz's force, 2/5 k d^(5/2), has taken the kinetic energy v^2 / 2. */
 static double depth(double speed, double stiffness) {
   return pow(5 * speed * speed / (4 * stiffness), 0.4);
 }
 
-/* Particles that press a Hertz floor at t = 0 turn around there. */
-static void press(branch_guess *g, const study_values *v) {
-  const double hertz = value_number(v, KEY_MODEL_HERTZ, 0);
-  for (size_t k = 0; hertz > 0 && k < value_count(v, KEY_ORBIT_AT_START); k++) {
-    const size_t i = (size_t)value_number(v, KEY_ORBIT_AT_START, k);
-    g->q[i] =
-        lattice_model_value(v, KEY_MODEL_FLOOR, i) - depth(g->v[i], hertz / lattice_model_value(v, KEY_MODEL_MASS, i));
+/* Particles that press a Hertz contact at t = 0 turn around there. */
+static void press(branch_guess *g, const branch_family *b, const ric_shooting_problem *motion) {
+  const double hertz = value_number(b->values, KEY_MODEL_HERTZ, 0);
+  for (size_t k = 0; hertz > 0 && k < motion->start_count; k++) {
+    const ric_obstacle *o = &b->model.obstacles[motion->at_start[k]];
+    const size_t i = o->coordinate;
+    g->q[i] = o->position - o->side * depth(g->v[i], hertz / value_of_particle(b->values, KEY_MODEL_MASS, i));
     g->v[i] = 0;
   }
 }
 
-static ric_status solve_chain(const chain_model *m, const study_values *v, double period, ric_poll poll,
-                              ric_orbit *orbit, ric_error *error) {
-  ric_orbit_options options = ric_orbit_options_default();
-  ric_orbit_solver *solver = NULL;
-  ric_pattern *pattern = NULL;
-  options.poll = poll;
-  ric_status status = chain_model_pattern(v, &pattern, error);
-  if (status == RIC_OK)
-    status = ric_orbit_init(orbit, m->chain.particles, ric_pattern_impacts(pattern), error);
-  if (status == RIC_OK)
-    status = ric_orbit_solver_create(&options, &solver, error);
-  if (status == RIC_OK)
-    status = ric_orbit_solve(solver, &m->chain, pattern, period, orbit, error);
-  if (status == RIC_OK && !isfinite(orbit->q[0]))
-    status = ric_fail(error, RIC_EINVAL, "no first guess: the linear chain has no such orbit: %.150s", orbit->reason);
-  ric_orbit_solver_destroy(&solver);
-  ric_pattern_destroy(&pattern);
-  return status;
-}
-
-/* The orbit of the linear chain, in units of time in which a particle alone has the frequency 1. */
-static ric_status take_orbit(branch_guess *g, const study_values *v, ric_poll poll, ric_error *error) {
-  const size_t n = particles_of(v);
-  const double w = frequency_alone(v);
-  chain_model chain;
-  ric_orbit orbit = {0};
-  if (chain_model_init(&chain, v) != 0)
-    return ric_fail(error, RIC_ENOMEM, "no memory for the floors");
-  chain.chain.gamma /= lattice_model_value(v, KEY_MODEL_MASS, 0) * w * w;
-  ric_status status = solve_chain(&chain, v, w * g->period, poll, &orbit, error);
-  for (size_t i = 0; i < n && status == RIC_OK; i++) {
-    g->q[i] = orbit.q[i];
-    g->v[i] = w * orbit.v[i];
+/* The first state of an even motion: positions, but speeds of coordinates that are hit at t = 0. */
+static void take_unknowns(branch_guess *g, const branch_family *b, const ric_shooting_problem *motion,
+                          const double *z) {
+  memcpy(g->q, z, particles_of(b->values) * sizeof *z);
+  for (size_t k = 0; k < motion->start_count; k++) {
+    const ric_obstacle *o = &b->model.obstacles[motion->at_start[k]];
+    g->q[o->coordinate] = o->position;
+    g->v[o->coordinate] = z[o->coordinate];
   }
+}
+
+/* A linear problem: Newton's method takes one step from rest. */
+static ric_status solve_linear(branch_guess *g, ric_shooting *shooting, double *z, ric_error *error) {
+  RIC_TRY(ric_shooting_guess(shooting, g->q, g->v, NULL, g->period, z, error));
+  ric_error why = {0};
+  const ric_status status = ric_shooting_solve(shooting, z, g->period, 0, NULL, &why);
+  if (status == RIC_ENUMERIC)
+    return ric_fail(error, RIC_EINVAL, "no first guess: the linear part has no such motion: %.150s", why.message);
+  return status == RIC_OK ? RIC_OK : ric_fail(error, status, "%s", why.message);
+}
+
+static ric_status take_orbit(branch_guess *g, const branch_family *b, ric_error *error) {
+  ric_shooting_problem motion = branch_family_motion(b, true);
+  ric_system *linear = NULL;
+  ric_shooting *shooting = NULL;
+  double *z = NULL;
+  motion.count = 0; /* impacts in between have times of their own, which are no linear unknowns */
+  ric_status status = lattice_model_linear(&b->model, &linear, error);
   if (status == RIC_OK)
-    press(g, v);
-  ric_orbit_clear(&orbit);
-  chain_model_clear(&chain);
+    status = ric_shooting_create(linear, &motion, &shooting, error);
+  if (status == RIC_OK && !(z = calloc(ric_shooting_unknowns(shooting), sizeof *z)))
+    status = ric_fail(error, RIC_ENOMEM, "no memory for the motion of the linear part");
+  if (status == RIC_OK)
+    status = solve_linear(g, shooting, z, error);
+  if (status == RIC_OK) {
+    take_unknowns(g, b, &motion, z);
+    press(g, b, &motion);
+  }
+  free(z);
+  ric_shooting_destroy(&shooting);
+  ric_system_destroy(&linear);
   return status;
 }
 
-ric_status branch_guess_find(branch_guess *g, const study_values *v, bool from_state, ric_poll poll, ric_error *error) {
+/* --- */
+
+ric_status branch_guess_find(branch_guess *g, const branch_family *b, bool from_state, ric_error *error) {
+  const study_values *v = b->values;
   g->period = branch_family_period(v);
   memset(g->q, 0, particles_of(v) * sizeof *g->q);
   memset(g->v, 0, particles_of(v) * sizeof *g->v);
@@ -114,7 +150,38 @@ ric_status branch_guess_find(branch_guess *g, const study_values *v, bool from_s
     take_state(g, v);
   else if (value_count(v, KEY_ORBIT_EXCITED) > 0)
     return excite(g, v, error);
+  else if (value_number(v, KEY_ORBIT_MODE, 0) > -INFINITY)
+    return take_mode(g, b, error);
   else if (value_count(v, KEY_ORBIT_AT_START) + value_count(v, KEY_ORBIT_AT_HALF) > 0)
-    return take_orbit(g, v, poll, error);
+    return take_orbit(g, b, error);
   return RIC_OK;
+}
+
+/* Takes the solution of the equations at the period. */
+static ric_status take_solution(branch_guess *g, const branch_family *b, const double *z, double *energy,
+                                ric_error *error) {
+  const size_t n = particles_of(b->values);
+  ric_orbit orbit = {0};
+  ric_status status = ric_orbit_init(&orbit, n, ric_shooting_impacts(b->first), error);
+  if (status == RIC_OK)
+    status = ric_shooting_orbit(b->first, z, g->period, &orbit, error);
+  if (status == RIC_OK) {
+    memcpy(g->q, orbit.q, n * sizeof *g->q);
+    memcpy(g->v, orbit.v, n * sizeof *g->v);
+    *energy = orbit.energy;
+  }
+  ric_orbit_clear(&orbit);
+  return status;
+}
+
+ric_status branch_guess_settle(branch_guess *g, const branch_family *b, double *energy, ric_error *error) {
+  double *z = calloc(ric_shooting_unknowns(b->first), sizeof *z);
+  ric_status status = z ? ric_shooting_guess(b->first, g->q, g->v, b->times, g->period, z, error)
+                        : ric_fail(error, RIC_ENOMEM, "no memory for the motion at the start");
+  if (status == RIC_OK)
+    status = ric_shooting_solve(b->first, z, g->period, 0, NULL, error);
+  if (status == RIC_OK)
+    status = take_solution(g, b, z, energy, error);
+  free(z);
+  return status;
 }

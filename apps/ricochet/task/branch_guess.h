@@ -14,11 +14,17 @@ typedef struct branch_guess {
 int branch_guess_init(branch_guess *g, size_t particles);
 void branch_guess_clear(branch_guess *g);
 
-/** Guesses for the present values: the state of the section `start`; particles that swing at the amplitude at which one
- *  alone has the period; the orbit of the linear chain with the impacts of the study, at Hertz contacts with the
- *  particles that press them at rest as deep as their speed takes them; else rest.
+/** Guesses for the present values of an open family: the state of the section `start`; particles that swing at the
+ *  amplitude at which one alone has the period; a normal mode at the energy; the motion of the linear part with the
+ *  impacts of the study at t = 0 and T/2, at Hertz contacts with the particles that press them at rest as deep as their
+ *  speed takes them; else rest.
  *  @param from_state  the study gives a state
- *  @returns RIC_EINVAL where there is no such motion, with the reason; RIC_ESTOPPED */
-ric_status branch_guess_find(branch_guess *g, const study_values *v, bool from_state, ric_poll poll, ric_error *error);
+ *  @returns RIC_EINVAL or RIC_ENUMERIC where there is no such motion, with the reason; RIC_ESTOPPED, RIC_ENOMEM */
+ric_status branch_guess_find(branch_guess *g, const branch_family *b, bool from_state, ric_error *error);
+
+/** Solves for the motion of the guess's period, of a family that starts at its energy, and takes it as the guess.
+ *  @param energy  set
+ *  @returns as ric_shooting_solve. */
+ric_status branch_guess_settle(branch_guess *g, const branch_family *b, double *energy, ric_error *error);
 
 #endif

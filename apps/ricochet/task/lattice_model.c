@@ -1,20 +1,37 @@
 #include "lattice_model.h"
 
 #include <math.h>
+#include <stdbool.h>
 #include <stdint.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "chain_model.h"
 
+static bool is_duffing_chain(const study_values *v) {
+  return strcmp(value_word(v, KEY_MODEL_TYPE), "duffing_chain") == 0;
+}
+
+static bool lists_springs(const study_values *v) {
+  static const study_key keys[] = {KEY_MODEL_STIFFNESS, KEY_MODEL_QUADRATIC, KEY_MODEL_CUBIC, KEY_MODEL_DAMPING};
+  for (size_t i = 0; i < sizeof keys / sizeof *keys; i++)
+    if (value_is_list(v, keys[i]))
+      return true;
+  return false;
+}
+
 int lattice_model_init(lattice_model *m, const study_values *v) {
   const size_t n = (size_t)value_number(v, KEY_MODEL_PARTICLES, 0);
+  const bool masses = value_is_list(v, KEY_MODEL_MASS), springs = is_duffing_chain(v) || lists_springs(v);
   *m = (lattice_model){.lattice = ric_lattice_default(n, RIC_ENDS_PERIODIC)};
   m->force_cos = calloc(n, sizeof *m->force_cos);
   m->force_sin = calloc(n, sizeof *m->force_sin);
   m->obstacles = calloc(2 * n, sizeof *m->obstacles);
-  if (value_is_list(v, KEY_MODEL_MASS))
+  if (masses)
     m->masses = calloc(n, sizeof *m->masses);
-  if (m->force_cos && m->force_sin && m->obstacles && (m->masses || !value_is_list(v, KEY_MODEL_MASS)))
+  if (springs)
+    m->springs = calloc(n + 1, sizeof *m->springs);
+  if (m->force_cos && m->force_sin && m->obstacles && (m->masses || !masses) && (m->springs || !springs))
     return 0;
   lattice_model_clear(m);
   return -1;
@@ -22,25 +39,39 @@ int lattice_model_init(lattice_model *m, const study_values *v) {
 
 void lattice_model_clear(lattice_model *m) {
   free(m->masses);
+  free(m->springs);
   free(m->force_cos);
   free(m->force_sin);
   free(m->obstacles);
   *m = (lattice_model){0};
 }
 
-double lattice_model_value(const study_values *v, study_key key, size_t particle) {
-  return value_number(v, key, value_is_list(v, key) ? particle : 0);
+/* The spring of a particle: of a chain its own, of a Duffing chain the one before it. */
+static ric_spring spring_of(const study_values *v, size_t particle) {
+  return (ric_spring){.linear = value_of_particle(v, KEY_MODEL_STIFFNESS, particle),
+                      .quadratic = value_of_particle(v, KEY_MODEL_QUADRATIC, particle),
+                      .cubic = value_of_particle(v, KEY_MODEL_CUBIC, particle),
+                      .damping = value_of_particle(v, KEY_MODEL_DAMPING, particle)};
 }
 
-static void read_springs(ric_lattice *lattice, const study_values *v) {
-  lattice->on_site = (ric_spring){.linear = value_number(v, KEY_MODEL_STIFFNESS, 0),
-                                  .quadratic = value_number(v, KEY_MODEL_QUADRATIC, 0),
-                                  .cubic = value_number(v, KEY_MODEL_CUBIC, 0),
-                                  .damping = value_number(v, KEY_MODEL_DAMPING, 0)};
-  lattice->link = (ric_spring){.linear = value_number(v, KEY_MODEL_GAMMA, 0),
-                               .quadratic = value_number(v, KEY_MODEL_LINK_QUADRATIC, 0),
-                               .cubic = value_number(v, KEY_MODEL_LINK_CUBIC, 0),
-                               .damping = value_number(v, KEY_MODEL_LINK_DAMPING, 0)};
+static ric_spring coupling(const study_values *v) {
+  return (ric_spring){.linear = value_number(v, KEY_MODEL_GAMMA, 0),
+                      .quadratic = value_number(v, KEY_MODEL_LINK_QUADRATIC, 0),
+                      .cubic = value_number(v, KEY_MODEL_LINK_CUBIC, 0),
+                      .damping = value_number(v, KEY_MODEL_LINK_DAMPING, 0)};
+}
+
+/* A Duffing chain is a lattice without on-site springs between two walls, from the second of which it is loose. */
+static void read_springs(lattice_model *m, const study_values *v) {
+  ric_lattice *lattice = &m->lattice;
+  const bool in_series = is_duffing_chain(v);
+  for (size_t i = 0; m->springs && i < lattice->particles; i++)
+    m->springs[i] = spring_of(v, i);
+  lattice->ends = in_series ? RIC_ENDS_FIXED : chain_model_ends(v);
+  lattice->links = in_series ? m->springs : NULL;
+  lattice->on_sites = in_series ? NULL : m->springs;
+  lattice->on_site = in_series ? (ric_spring){0} : spring_of(v, 0);
+  lattice->link = in_series ? (ric_spring){0} : coupling(v);
 }
 
 /* A cos(w t + phase) = A cos(phase) cos(w t) - A sin(phase) sin(w t); no force at all is cheaper than one of zeros. */
@@ -48,7 +79,7 @@ static void read_force(lattice_model *m, const study_values *v) {
   const double phase = value_number(v, KEY_MODEL_PHASE, 0);
   int any = 0;
   for (size_t i = 0; i < m->lattice.particles; i++) {
-    const double amplitude = lattice_model_value(v, KEY_MODEL_FORCE, i);
+    const double amplitude = value_of_particle(v, KEY_MODEL_FORCE, i);
     m->force_cos[i] = amplitude * cos(phase);
     m->force_sin[i] = -amplitude * sin(phase);
     any = any || amplitude != 0;
@@ -62,29 +93,58 @@ static void read_force(lattice_model *m, const study_values *v) {
 static void add_obstacles(lattice_model *m, const study_values *v, study_key key, int side) {
   const double hertz = value_number(v, KEY_MODEL_HERTZ, 0);
   for (size_t i = 0; i < m->lattice.particles; i++) {
-    const double position = lattice_model_value(v, key, i);
+    const double position = value_of_particle(v, key, i);
     if (position > -INFINITY)
-      m->obstacles[m->obstacle_count++] =
-          (ric_obstacle){.coordinate = i,
-                         .side = side,
-                         .position = position,
-                         .restitution = lattice_model_value(v, KEY_MODEL_RESTITUTION, i),
-                         .stiffness = hertz > 0 ? hertz : INFINITY};
+      m->obstacles[m->obstacle_count++] = (ric_obstacle){.coordinate = i,
+                                                         .side = side,
+                                                         .position = position,
+                                                         .restitution = value_of_particle(v, KEY_MODEL_RESTITUTION, i),
+                                                         .stiffness = hertz > 0 ? hertz : INFINITY};
   }
 }
 
 void lattice_model_read(lattice_model *m, const study_values *v) {
-  m->lattice.ends = chain_model_ends(v);
   if (!m->masses)
     m->lattice.mass = value_number(v, KEY_MODEL_MASS, 0);
   for (size_t i = 0; m->masses && i < m->lattice.particles; i++)
     m->masses[i] = value_number(v, KEY_MODEL_MASS, i);
   m->lattice.masses = m->masses;
-  read_springs(&m->lattice, v);
+  read_springs(m, v);
   read_force(m, v);
   m->obstacle_count = 0;
   add_obstacles(m, v, KEY_MODEL_FLOOR, +1);
   add_obstacles(m, v, KEY_MODEL_WALL, -1);
+}
+
+/* --- its linear part --- */
+
+static ric_spring linear_spring(ric_spring spring) {
+  return (ric_spring){.linear = spring.linear, .damping = spring.damping};
+}
+
+ric_status lattice_model_linear(const lattice_model *m, ric_system **system, ric_error *error) {
+  const size_t count = m->springs ? m->lattice.particles + 1 : 0;
+  ric_spring *springs = calloc(count + 1, sizeof *springs);
+  ric_obstacle *obstacles = calloc(m->obstacle_count + 1, sizeof *obstacles);
+  ric_lattice lattice = m->lattice;
+  ric_status status = ric_fail(error, RIC_ENOMEM, "no memory for the linear part of %zu particles", lattice.particles);
+  if (!springs || !obstacles)
+    goto out;
+  for (size_t i = 0; i < count; i++)
+    springs[i] = linear_spring(m->springs[i]);
+  for (size_t j = 0; j < m->obstacle_count; j++) {
+    obstacles[j] = m->obstacles[j];
+    obstacles[j].stiffness = INFINITY;
+  }
+  lattice.on_site = linear_spring(lattice.on_site);
+  lattice.link = linear_spring(lattice.link);
+  lattice.on_sites = lattice.on_sites ? springs : NULL;
+  lattice.links = lattice.links ? springs : NULL;
+  status = ric_system_create_lattice(&lattice, obstacles, m->obstacle_count, system, error);
+out:
+  free(springs);
+  free(obstacles);
+  return status;
 }
 
 size_t lattice_model_obstacle(const lattice_model *m, size_t particle, int side) {

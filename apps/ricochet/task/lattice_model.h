@@ -9,14 +9,15 @@
 /** A lattice with the storage of its lists. */
 typedef struct lattice_model {
   ric_lattice lattice;
-  double *masses;                /* [particles] when the study lists them, else NULL */
+  double *masses;      /* [particles] when the study lists them, else NULL */
+  ric_spring *springs; /* [particles + 1] those of a Duffing chain, or of a chain that lists them; else NULL */
   double *force_cos, *force_sin; /* [particles] */
   ric_obstacle *obstacles;       /* [obstacle_count] floors by particle, then walls by particle; room for both of all */
   size_t obstacle_count;
 } lattice_model;
 
 /** Bytes of a lattice with its lists, per particle. */
-enum { LATTICE_MODEL_BYTES = 3 * sizeof(double) + 2 * sizeof(ric_obstacle) };
+enum { LATTICE_MODEL_BYTES = 3 * sizeof(double) + sizeof(ric_spring) + 2 * sizeof(ric_obstacle) };
 
 /** Allocates for the number of particles of the values. @returns 0, or -1 when out of memory. */
 int lattice_model_init(lattice_model *m, const study_values *v);
@@ -25,10 +26,11 @@ void lattice_model_clear(lattice_model *m);
 /** Reads the lattice of the present task. */
 void lattice_model_read(lattice_model *m, const study_values *v);
 
+/** A system of the linear part of the lattice, with all obstacles rigid; the caller destroys it.
+ *  @returns as ric_system_create_lattice. */
+ric_status lattice_model_linear(const lattice_model *m, ric_system **system, ric_error *error);
+
 /** Index of the obstacle of a particle, side +1 floor, -1 wall; SIZE_MAX when it has none. */
 size_t lattice_model_obstacle(const lattice_model *m, size_t particle, int side);
-
-/** Element of a particle: that of the list, or the one value for all. */
-double lattice_model_value(const study_values *v, study_key key, size_t particle);
 
 #endif

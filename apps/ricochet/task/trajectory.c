@@ -158,8 +158,8 @@ static ric_status read_start(worker *w, verdict *found) {
   if (w->from_orbit)
     return start_on_orbit(w, found);
   for (size_t i = 0; i < w->model.lattice.particles; i++) {
-    w->q[i] = lattice_model_value(w->values, KEY_START_Q, i);
-    w->v[i] = lattice_model_value(w->values, KEY_START_V, i);
+    w->q[i] = value_of_particle(w->values, KEY_START_Q, i);
+    w->v[i] = value_of_particle(w->values, KEY_START_V, i);
   }
   return RIC_OK;
 }
