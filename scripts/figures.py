@@ -98,7 +98,8 @@ class Study:
         self.at_start, self.at_half = (
             [int(item) for item in self.items(key) if item.isdigit()] for key in ("at_start", "at_half")
         )
-        self.floors = self.items("floor") or [self.word("floor") or "-1"]
+        self.in_series = self.word("type") == "duffing_chain"
+        self.floors = self.items("floor") or [self.word("floor") or self.no_place("floor")]
 
     def word(self, key):
         """The value of a key that holds one word or number, None if there is none."""
@@ -110,8 +111,31 @@ class Study:
         found = re.search(rf"\b{key}:\s*(?:\[([^\]]*)\]|((?:\s*-\s+\S+[ \t]*\n)+))", self.body)
         return re.findall(r"[^\s,]+", re.sub(r"\s-\s", " ", found[1] or found[2] or "")) if found else []
 
+    def no_place(self, side):
+        """Where the floor or the wall stands that the study does not name."""
+        return "-1" if side == "floor" and not self.in_series else "null"
+
+    def places(self, side, particles):
+        """Words for the floor or the wall of every particle; one for all is that of the last one of masses in series."""
+        named = re.search(rf"\b{side}:", self.body)
+        words = self.items(side) or [self.word(side) if named else self.no_place(side)]
+        if len(words) > 1:
+            return words
+        return ["null"] * (particles - 1) + words if self.in_series else words * particles
+
+    def series(self, particles):
+        """Masses in series, and what stands before them, in words."""
+        parts = [f"{particles} masses in series"]
+        for key, words in (("stiffness", "stiffness"), ("wall", "wall at"), ("floor", "floor at")):
+            value = ", ".join(self.items(key)) or self.word(key)
+            if value:
+                parts.append(f"{words} {value}")
+        return ", ".join(parts)
+
     def chain(self, particles):
         """The kind of chain and its number of particles in words."""
+        if self.in_series:
+            return self.series(particles)
         ends = {
             "periodic": "ring of {} particles",
             "fixed": "{} particles, fixed ends",

@@ -82,8 +82,14 @@ class Branches:
 
     def task_name(self, task):
         return ", ".join(
-            f"{figures.parameter_symbol(name)} = {values[task]:.4g}" for name, values in zip(self.names, self.swept)
+            f"{self.symbol(name)} = {values[task]:.4g}" for name, values in zip(self.names, self.swept)
         )
+
+    def symbol(self, name):
+        """Of a swept parameter; elements of masses in series are those of springs."""
+        symbol = figures.parameter_symbol(name)
+        springs = self.study.in_series and name.startswith(("model.stiffness", "model.quadratic", "model.cubic"))
+        return symbol.replace("of particle", "of spring") if springs else symbol
 
 
 def styles(result, rows):

@@ -78,7 +78,7 @@ class Curves(Branches):
 
 def obstacle_of(result, task):
     """Distance of the only obstacle; None where there are none or two."""
-    defaults = {"floor": "-1", "wall": "null"}
+    defaults = {side: result.study.no_place(side) for side in ("floor", "wall")}
     listed = lambda key: bool(result.study.items(key))  # noqa: E731
     given = [key for key, default in defaults.items() if listed(key) or (result.study.word(key) or default) != "null"]
     number = result.model_number(task, given[0], -1.0) if len(given) == 1 else None

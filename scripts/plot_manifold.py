@@ -47,7 +47,7 @@ def draw(result, options):
     for put, name in zip((axes.set_xlabel, axes.set_ylabel, axes.set_zlabel), options.axes):
         put(symbol(name), labelpad=8)
     axes.view_init(**VIEW)
-    axes.set_box_aspect(None, zoom=0.92)
+    axes.set_box_aspect(None, zoom=1.05)
     figure.colorbar(plt.cm.ScalarMappable(norm, figures.colour_map()), ax=axes, label="energy", shrink=0.6, pad=0.06)
     figures.put_title(figure, axes, result, 84)
     return figure

@@ -14,7 +14,6 @@ import figures
 from figures import FigureError
 
 SIDES = {"floor": 1, "wall": -1}
-DEFAULTS = {"floor": "-1", "wall": "null"}  # what a study means that does not name them
 LABEL = r"displacement $q$"
 
 
@@ -157,9 +156,7 @@ class Motion:
         As the study says it, or the sweep; where the study says it in a form unknown here, though the particle
         hit, from the motion: its displacement at the hit closest to a sample.
         """
-        named = re.search(rf"\b{name}:", self.study.body)
-        words = self.study.items(name) or [self.study.word(name) if named else DEFAULTS[name]]
-        words = words * self.particles if len(words) == 1 else words
+        words = self.study.places(name, self.particles)
         positions = np.full(self.particles, np.nan)
         for i, word in enumerate(words[: self.particles]):
             positions[i] = number_of(word)

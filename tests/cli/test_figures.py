@@ -87,6 +87,13 @@ orbit: {motion: forced}
 branch: {parameter: model.force, from: 0.05, to: 20, scale: log, cross: true,
          trace: {parameter: model.frequency, low: 0.3, high: 3}}
 """,
+    "modes": """kind: branch
+title: two masses before a wall
+model: {type: duffing_chain, particles: 2, mass: 1, stiffness: [3, 1], cubic: [0, 0], wall: 2}
+orbit: {mode: 0}
+branch: {parameter: orbit.energy, from: 0.1, to: 3, step_most: 0.2, cross: true, samples: 31}
+sweep: {parameter: "model.cubic[1]", values: [0, 0.1, 0.2]}
+""",
     "several_curves": """kind: branch
 title: grazing at several dampings, frequency followed
 model: {type: chain, particles: 1, ends: free, gamma: 0, floor: -1, restitution: 0.8, force: 0.3}
@@ -179,6 +186,14 @@ FIGURES = [
     ("plot_branch.py", "branches", ["--y", "amplitude", "--tasks", "0", "8"]),
     ("plot_branch.py", "logarithmic_branch", ["--y", "period"]),
     ("plot_laws.py", "soft_states", ["--impacts", "rigid_states.h5", "--couplings", "3"]),
+    ("plot_branch.py", "modes", ["--x", "amplitude", "--y", "frequency"]),
+    ("plot_frequency_energy.py", "modes", []),
+    ("plot_frequency_energy.py", "modes", ["--tasks", "2", "--energy-high", "2", "--resonances"]),
+    ("plot_frequency_energy.py", "branch", []),
+    ("plot_manifold.py", "modes", []),
+    ("plot_manifold.py", "modes", ["--task", "2", "--axes", "q0", "q1", "v1", "--energy-high", "2"]),
+    ("plot_motions.py", "modes", []),
+    ("plot_motions.py", "modes", ["--task", "1", "--points", "0", "7", "--plane", "q1", "v1"]),
     ("plot_curves.py", "curves", []),
     ("plot_curves.py", "several_curves", []),
     ("plot_curves.py", "several_curves", ["--tasks", "1"]),
@@ -202,6 +217,9 @@ REFUSALS = [
     ("plot_laws.py", "family.h5", "not a branch with branch.states: true"),
     ("plot_laws.py", "branches.h5", "not a branch with branch.states: true"),
     ("plot_branch.py", "unborn.h5", "no branch of it begins (failed_start)"),
+    ("plot_frequency_energy.py", "family.h5", "not a result of kind branch"),
+    ("plot_manifold.py", "branch.h5", "no /branch/point_history_q in it (the study did not ask for branch.samples)"),
+    ("plot_motions.py", "unborn.h5", "no /branch/point_history_q in it"),
     ("plot_curves.py", "family.h5", "not a result of kind branch"),
     ("plot_curves.py", "branch.h5", "no /branch/curve_special in it (the study did not ask for branch.trace)"),
 ]
@@ -311,6 +329,9 @@ def help_names_the_datasets(scripts, folder, script):
         "plot_lyapunov.py": "trajectory/outcome",
         "plot_branch.py": "branch/outcome",
         "plot_curves.py": "branch/outcome",
+        "plot_frequency_energy.py": "branch/outcome",
+        "plot_manifold.py": "branch/point_history_q",
+        "plot_motions.py": "branch/point_history_q",
         "plot_laws.py": "branch/point_parameter",
     }.get(script, "orbits/outcome")
     assert (
