@@ -94,6 +94,14 @@ orbit: {mode: 0}
 branch: {parameter: orbit.energy, from: 0.1, to: 3, step_most: 0.2, cross: true, samples: 31}
 sweep: {parameter: "model.cubic[1]", values: [0, 0.1, 0.2]}
 """,
+    "ritz": """kind: orbits
+title: Ritz
+model: {type: duffing_chain, particles: 2, mass: 1, stiffness: [3, 1], cubic: [0, 0], wall: 2}
+orbit: {period: 6.8, at_start: [1], method: ritz}
+sweep:
+  - {parameter: "model.cubic[1]", values: [0, 0.1]}
+  - {parameter: orbit.functions, values: [2, 4, 8]}
+""",
     "several_curves": """kind: branch
 title: grazing at several dampings, frequency followed
 model: {type: chain, particles: 1, ends: free, gamma: 0, floor: -1, restitution: 0.8, force: 0.3}
@@ -193,6 +201,8 @@ FIGURES = [
     ("plot_manifold.py", "modes", []),
     ("plot_manifold.py", "modes", ["--task", "2", "--axes", "q0", "q1", "v1", "--energy-high", "2"]),
     ("plot_motions.py", "modes", []),
+    ("plot_ritz.py", "ritz", []),
+    ("plot_ritz.py", "ritz", ["--stalled", "ritz.h5"]),
     ("plot_motions.py", "modes", ["--task", "1", "--points", "0", "7", "--plane", "q1", "v1"]),
     ("plot_curves.py", "curves", []),
     ("plot_curves.py", "several_curves", []),
@@ -221,6 +231,7 @@ REFUSALS = [
     ("plot_manifold.py", "branch.h5", "no /branch/point_history_q in it (the study did not ask for branch.samples)"),
     ("plot_motions.py", "unborn.h5", "no /branch/point_history_q in it"),
     ("plot_curves.py", "family.h5", "not a result of kind branch"),
+    ("plot_ritz.py", "family.h5", "not a result of kind orbits with method: ritz"),
     ("plot_curves.py", "branch.h5", "no /branch/curve_special in it (the study did not ask for branch.trace)"),
 ]
 
@@ -332,6 +343,7 @@ def help_names_the_datasets(scripts, folder, script):
         "plot_frequency_energy.py": "branch/outcome",
         "plot_manifold.py": "branch/point_history_q",
         "plot_motions.py": "branch/point_history_q",
+        "plot_ritz.py": "orbits/ritz_functions",
         "plot_laws.py": "branch/point_parameter",
     }.get(script, "orbits/outcome")
     assert (

@@ -11,6 +11,8 @@ MODES = f"kind: branch\n{MODEL}orbit: {{mode: 0}}\n{ENERGY}"
 SWEPT = MODES + 'sweep:\n  - {parameter: orbit.mode, values: [0, 1]}\n  - {parameter: "model.cubic[1]", values: [0, 0.1, 0.2]}\n'
 PERIOD = (f"kind: branch\n{MODEL}orbit: {{period: 7, at_start: [1]}}\nbranch: {{parameter: orbit.energy, to: 6, low: 1}}\n"
           "sweep: {parameter: orbit.period, values: [7, 14.9, 15]}\n")
+RITZ = (f"kind: orbits\n{MODEL}orbit: {{period: 6.8, at_start: [1], method: ritz, verify: true, stable: true}}\n"
+        'sweep:\n  - {parameter: "model.cubic[1]", values: [0, 0.1]}\n  - {parameter: orbit.functions, values: [8, 16, 32, 64]}\n')
 LOWEST = np.sqrt((5 - np.sqrt(13)) / 2)  # of the springs, without their cubic terms
 
 
@@ -50,12 +52,92 @@ def keys_of_a_type_of_model_are_refused_by_name(ricochet, folder):
         assert MODES.count(old) == 1, old
         write(folder, "s.yaml", MODES.replace(old, new))
         ricochet("check", "s.yaml", cwd=folder).expect_refused(USAGE, *phrases)
-    write(folder, "s.yaml", f"kind: orbits\n{MODEL}orbit: {{period: 7, at_start: [1]}}\n")
-    ricochet("check", "s.yaml", cwd=folder).expect_refused(
-        USAGE, "s.yaml:2: model.type = duffing_chain is for kind: trajectory or branch, and this is kind: orbits")
     write(folder, "s.yaml", f"kind: trajectory\n{MODEL}orbit: {{period: 7, at_start: [1]}}\ntime: {{duration: 1}}\n")
     ricochet("check", "s.yaml", cwd=folder).expect_refused(
         USAGE, "s.yaml:2: model.type = duffing_chain, but a start on an orbit needs model.type = chain")
+
+
+@test
+def orbits_of_duffing_chains_are_refused_by_place_and_value(ricochet, folder):
+    for old, new, phrase in [
+        ("ritz", "impulse", "s.yaml:3: orbit.method = impulse is for model.type: chain, and this is model.type: duffing"),
+        ("at_start: [1]", "at_half: [1]", "s.yaml:3: orbit.method = ritz is for one impact per period, expected one"),
+        ("ritz", "ritz, functions: 0", "s.yaml:3: orbit.functions = 0 is out of range, expected an integer from 1 to"),
+        ("ritz", "ritz, tolerance: 0", "s.yaml:3: orbit.tolerance = 0 is out of range"),
+        ("wall: 2", "wall: 2, damping: 0.1", "s.yaml:2: model.damping = 0.1, but kind: orbits needs model.damping = 0"),
+        ("wall: 2", "wall: 2, restitution: 0.9", "s.yaml:2: model.restitution = 0.9 is not in this version"),
+        ("wall: 2", "wall: 2, hertz: 100", "s.yaml:2: model.hertz = 100, but kind: orbits needs model.hertz = null"),
+        ("wall: 2", "wall: null", "s.yaml:3: orbit.at_start[0] = 1 has no floor or wall to hit"),
+    ]:
+        assert RITZ.count(old) == 1, old
+        write(folder, "s.yaml", RITZ.replace(old, new))
+        ricochet("check", "s.yaml", cwd=folder).expect_refused(USAGE, phrase)
+
+
+    write(folder, "s.yaml", study(at_start="[3]", orbit="special_points: true", sweep="{parameter: model.gamma, values: [0]}"))
+    ricochet("check", "s.yaml", "--set", "orbit.method=shooting", cwd=folder).expect_refused(
+        USAGE, "s.yaml:", "orbit.special_points = true with orbit.method = shooting, expected method: impulse or dense")
+
+
+@test
+def shooting_finds_the_orbits_of_chains_and_nonlinear_ones_too(ricochet, folder):
+    """Those of linear chains are known by impulse responses; the others an event-driven run confirms."""
+    base = study(6, at_start="[3]", sweep="{parameter: model.gamma, from: 0, to: 0.15, points: 4}")
+    found = {}
+    for method in ("impulse", "shooting"):
+        path = run(ricochet, folder, base, "--set", f"orbit.method={method}", "--set", "orbit.multipliers=true", name=method)
+        with h5py.File(path) as file:
+            found[method] = {name: file["orbits"][name][()] for name in ("q", "v", "energy", "impulse", "multiplier_max")}
+            found[method]["outcome"] = words_of(file["orbits/outcome"])
+    for name, values in found["impulse"].items():
+        if name != "outcome":
+            assert np.allclose(values, found["shooting"][name], rtol=1e-7, atol=1e-9), name
+    assert found["impulse"]["outcome"] == found["shooting"]["outcome"]
+    hard = run(ricochet, folder, base, "--set", "orbit.method=shooting", "--set", "model.cubic=0.1", "--set",
+               "orbit.verify=true", name="hard")  # fmt: skip
+    with h5py.File(hard) as file:
+        assert words_of(file["orbits/verified"]) == ["verified"] * 4, file["orbits/reason"][()]
+        assert (file["orbits/energy"][()] != found["impulse"]["energy"]).all()
+
+
+@test
+def approximations_by_ritz_converge_as_they_say(ricochet, folder):
+    """As the third power of their number with constants; without, they stall. The orbit is the one found by shooting."""
+    with h5py.File(run(ricochet, folder, RITZ, name="ritz")) as file:
+        orbits = {name: data[()] for name, data in file["orbits"].items()}
+        assert words_of(file["orbits/outcome"]) == ["admissible"] * 8
+        assert words_of(file["orbits/verified"]) == ["verified"] * 8
+        assert words_of(file["orbits/stable"]) == ["stable"] * 8
+    errors = orbits["ritz_error"].reshape(2, 4)
+    assert orbits["ritz_functions"].tolist() == [8, 16, 32, 64] * 2
+    rates = -np.log2(errors[:, 1:] / errors[:, :-1])
+    assert (abs(rates - 3) < 0.15).all(), rates
+    for name, rate in (("ritz_error_v", 2), ("ritz_defect", 1)):
+        values = orbits[name].reshape(2, 4)
+        assert (abs(-np.log2(values[:, 1:] / values[:, :-1]) - rate) < 0.15).all(), name
+    with h5py.File(run(ricochet, folder, RITZ.replace("ritz", "shooting"), name="shot")) as file:
+        energy = file["orbits/energy"][()]
+    assert (abs(orbits["energy"] - energy).reshape(2, 4) < 30 * errors).all()
+    with h5py.File(run(ricochet, folder, RITZ, "--set", "orbit.constants=false", name="stalled")) as file:
+        stalled = file["orbits/ritz_error"][()]
+    assert (stalled > 0.02).all() and (stalled < 0.1).all(), stalled
+
+
+@test
+def fewer_functions_are_taken_when_a_tolerance_is_enough(ricochet, folder):
+    path = run(ricochet, folder, RITZ, "--set", "orbit.tolerance=1e-3")
+    with h5py.File(path) as file:
+        functions, error = file["orbits/ritz_functions"][()], file["orbits/ritz_error"][()]
+    assert (functions >= 4).all() and (functions <= 8).all() and (error <= 1e-3).all()
+
+
+@test
+def orbits_that_do_not_exist_are_rows(ricochet, folder):
+    """At the blow-up of the linear part nothing is found; beyond it the impulse pulls."""
+    text = RITZ.replace("ritz", "shooting").split("sweep:")[0] + "sweep: {parameter: orbit.period, values: [6.8, 6.07, 1e-9]}\n"
+    with h5py.File(run(ricochet, folder, text, "--set", "model.cubic=0")) as file:
+        assert words_of(file["orbits/outcome"])[:2] == ["admissible", "inadmissible"]
+        assert words_of(file["orbits/outcome"])[2] in ("failed", "inadmissible") and len(file["orbits/reason"][1]) > 10
 
 
 @test

@@ -267,8 +267,6 @@ def what_later_versions_bring_is_refused_by_name(ricochet, folder):
     cases = [
         *(("kind: orbits", f"kind: {kind}", 1, f"kind = {kind}", later, "orbits") for kind in kinds),
         ("type: chain", "type: oscillator", 4, "model.type = oscillator", later, "chain"),
-        ("method: impulse", "method: shooting", 14, "orbit.method = shooting", later, "impulse, dense"),
-        ("method: impulse", "method: ritz", 14, "orbit.method = ritz", later, "impulse, dense"),
         ("sweep:", "iterate: {keep: 1}\nsweep:", 16, "'iterate'", later),
         ("restitution: 1", "restitution: 0.8", 9, "model.restitution = 0.8", later),
     ]
@@ -285,7 +283,8 @@ def assignments_are_refused_like_the_study(ricochet, folder):
         ("model.particles=1e12", "model.particles = 1e12", "from 1 to 1000000000"),
         ("orbit.at_start[7]=1", "at_start"),
         ("sweep[0].points=1e12", "points = 1e12", "from 1 to"),
-        ("orbit.method=shooting", "not in this version"),
+        ("model.type=oscillator", "not in this version"),
+        ("orbit.method=newton", "expected one of impulse, dense, shooting, ritz"),
         ("model.gamma", "no '='", "path=value"),
         ("=3", "no path", "path=value"),
         ("model.gamma=[0.1", "not YAML"),

@@ -82,22 +82,19 @@ static int check_kind(const study *s, const document *d, message *why) {
   return 0;
 }
 
-/* The type of the model is one that the kind takes, and the keys are of that type. */
+/* The keys are of the model's type, and so are the words among their values. */
 static int check_model(const study *s, const document *d, message *why) {
-  const char *model = study_model(s), *kind = s->values[KEY_KIND].text;
-  const char *taken = schema_word_kinds(schema_row(KEY_MODEL_TYPE), model);
-  char kinds[64];
-  if (taken && !schema_is_among(kind, strlen(kind), taken)) {
-    schema_either(taken, kinds, sizeof kinds);
-    return document_refuse(d, s->values[KEY_MODEL_TYPE].node, why,
-                           "model.type = %s is for kind: %s, and this is kind: %s", model, kinds, kind);
-  }
+  const char *model = study_model(s);
   for (int key = 0; key < KEY_COUNT; key++) {
     const schema_entry *row = schema_row((study_key)key);
     const int node = check_node_of_key(s, (study_key)key);
     if (node && !schema_concerns_model(row, model))
       return document_refuse(d, node, why, "%s is a key of model.type: %s, and this is model.type: %s", row->path,
                              row->models, model);
+    const char *taken = node && row->word_models ? schema_word_models(row, s->values[key].text) : NULL;
+    if (taken && !schema_is_among(model, strlen(model), taken))
+      return document_refuse(d, node, why, "%s = %s is for model.type: %s, and this is model.type: %s", row->path,
+                             s->values[key].text, taken, model);
   }
   return 0;
 }
@@ -175,15 +172,15 @@ int check_key_default(const study *s, const document *d, study_key key, message 
   return check_default(s, d, key, number, why);
 }
 
-/* Periodic orbits are those of the linear, conservative chain with rigid floors. */
+/* Periodic orbits are those of conservative models with rigid obstacles, by impulse responses of linear chains. */
 static int check_defaults(const study *s, const document *d, message *why) {
   int code = 0;
-  const char *model = study_model(s), *taken = schema_word_kinds(schema_row(KEY_MODEL_TYPE), model);
-  if (taken && !schema_is_among("orbits", strlen("orbits"), taken))
+  const char *method = study_method(s);
+  if (!study_is_kind(s, "orbits") && strcmp(study_model(s), "chain") != 0)
     return document_refuse(d, s->values[KEY_MODEL_TYPE].node, why,
-                           "model.type = %s, but a start on an orbit needs model.type = chain", model);
+                           "model.type = %s, but a start on an orbit needs model.type = chain", study_model(s));
   for (int key = 0; key < KEY_COUNT && !code; key++)
-    if (schema_row((study_key)key)->orbits_default)
+    if (schema_is_among(method, strlen(method), schema_row((study_key)key)->orbits_default))
       code = check_key_default(s, d, (study_key)key, why);
   return code;
 }

@@ -29,15 +29,15 @@ static void print_row(FILE *out, const schema_entry *row, const char *name) {
   fprintf(out, " | ");
 }
 
-/* Words that are not for every kind of study. */
-static void print_word_kinds(FILE *out, const schema_entry *row) {
+/* Words that are not for every type of model. */
+static void print_word_models(FILE *out, const schema_entry *row) {
   const char *word = row->words;
-  for (size_t i = 0; row->word_kinds && *word; i++, word += strcspn(word, "|"), word += *word == '|') {
-    char kinds[64];
-    if (!row->word_kinds[i])
+  for (size_t i = 0; row->word_models && *word; i++, word += strcspn(word, "|"), word += *word == '|') {
+    char models[64];
+    if (!row->word_models[i])
       continue;
-    schema_either(row->word_kinds[i], kinds, sizeof kinds);
-    fprintf(out, " `%.*s` is for `kind: %s`.", (int)strcspn(word, "|"), word, kinds);
+    schema_either(row->word_models[i], models, sizeof models);
+    fprintf(out, " `%.*s` is for `model.type: %s`.", (int)strcspn(word, "|"), word, models);
   }
 }
 
@@ -55,9 +55,12 @@ static void print_key(FILE *out, const schema_entry *row) {
   }
   if (row->models)
     fprintf(out, " For `model.type: %s`.", row->models);
-  print_word_kinds(out, row);
-  if (row->orbits_default)
-    fprintf(out, " Orbits need the default.");
+  print_word_models(out, row);
+  if (row->orbits_default) {
+    char methods[64];
+    schema_either(row->orbits_default, methods, sizeof methods);
+    fprintf(out, " Orbits by `method: %s` need the default.", methods);
+  }
   fprintf(out, " |\n");
 }
 

@@ -58,9 +58,9 @@ bool schema_concerns_model(const schema_entry *entry, const char *model) {
   return !entry->models || schema_is_among(model, strlen(model), entry->models);
 }
 
-const char *schema_word_kinds(const schema_entry *entry, const char *word) {
+const char *schema_word_models(const schema_entry *entry, const char *word) {
   const long place = schema_find_word(word, strlen(word), entry->words);
-  return entry->word_kinds && place >= 0 ? entry->word_kinds[place] : NULL;
+  return entry->word_models && place >= 0 ? entry->word_models[place] : NULL;
 }
 
 const char *schema_fallback(const schema_entry *entry, const char *model) {

@@ -41,6 +41,9 @@ typedef enum study_key {
   KEY_ORBIT_EXCITED,
   KEY_ORBIT_MODE,
   KEY_ORBIT_METHOD,
+  KEY_ORBIT_FUNCTIONS,
+  KEY_ORBIT_CONSTANTS,
+  KEY_ORBIT_TOLERANCE,
   KEY_ORBIT_STATES,
   KEY_ORBIT_SPECIAL_POINTS,
   KEY_ORBIT_MULTIPLIERS,
@@ -111,18 +114,18 @@ typedef struct schema_entry {
   const char *words;       /* allowed words, "impulse|dense" */
   const char *later_words; /* words of a later version: refused with "not in this version" */
   const char *const
-      *word_kinds;          /* kinds of study that each of `words` is for, NULL among them: all; NULL: all for all */
+      *word_models;         /* types of model that each of `words` is for, NULL among them: all; NULL: all for all */
   const char *kinds;        /* kinds of study that the key is for, "orbits|trajectory"; NULL: all */
   const char *models;       /* types of model that the key is for, "chain|duffing_chain"; NULL: all */
   const char *other_models; /* types of model whose default is `other_fallback`; NULL: none */
   const char *other_fallback;
-  bool per_particle;       /* a list has one element per particle */
-  const char *last_models; /* types of model of which a single value is that of the last particle; NULL: none */
-  bool orbits_default;     /* periodic orbits are computed for the default only */
-  bool sweep;              /* numbers only: can be the parameter of a sweep */
-  const char *no_sweep;    /* why it cannot be swept, for the refusal */
-  const char *units;       /* NULL for dimensionless */
-  const char *doc;         /* one line for the reference */
+  bool per_particle;          /* a list has one element per particle */
+  const char *last_models;    /* types of model of which a single value is that of the last particle; NULL: none */
+  const char *orbits_default; /* methods that find orbits for the default only, "impulse|dense"; NULL: none */
+  bool sweep;                 /* numbers only: can be the parameter of a sweep */
+  const char *no_sweep;       /* why it cannot be swept, for the refusal */
+  const char *units;          /* NULL for dimensionless */
+  const char *doc;            /* one line for the reference */
 } schema_entry;
 
 /** The keys of one entry of `sweep`, described by rows of the same kind. */
@@ -168,8 +171,8 @@ void schema_either(const char *words, char *text, size_t size);
 bool schema_concerns(const schema_entry *entry, const char *kind);
 /** Whether a key is for models of this type. */
 bool schema_concerns_model(const schema_entry *entry, const char *model);
-/** Kinds of study that a word of the entry is for, NULL: all. */
-const char *schema_word_kinds(const schema_entry *entry, const char *word);
+/** Types of model that a word of the entry is for, NULL: all. */
+const char *schema_word_models(const schema_entry *entry, const char *word);
 /** The default for models of this type as YAML text; NULL and "" as in the entry. @param model  may be NULL */
 const char *schema_fallback(const schema_entry *entry, const char *model);
 /** Place of a word in "a|b|c", from 0; -1 when it is none of them, as of NULL. @param length  of the word */

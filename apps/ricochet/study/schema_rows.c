@@ -4,12 +4,11 @@
 #include "study.h"
 
 /* A number of the springs that a model has one of per particle; of those that couple them in a chain. */
-#define SPRING                                                                                                         \
-  .type = VALUE_NUMBER, .scalar = true, .list = true, .per_particle = true, .orbits_default = true, .sweep = true
-#define LINK .type = VALUE_NUMBER, .scalar = true, .models = "chain", .orbits_default = true, .sweep = true
+#define SPRING .type = VALUE_NUMBER, .scalar = true, .list = true, .per_particle = true, .sweep = true
+#define LINK   .type = VALUE_NUMBER, .scalar = true, .models = "chain", .orbits_default = "impulse|dense", .sweep = true
 
-/* Kinds of study that take each type of model. */
-static const char *const type_kinds[] = {NULL, "trajectory|branch"};
+/* Types of model of which each method finds orbits. */
+static const char *const method_models[] = {"chain", "chain", NULL, NULL};
 
 static const schema_entry rows[KEY_BRANCH_PARAMETER] = {
     [KEY_KIND] = {.path = "kind",
@@ -30,7 +29,6 @@ static const schema_entry rows[KEY_BRANCH_PARAMETER] = {
                         WORD,
                         .required = true,
                         .words = "chain|duffing_chain",
-                        .word_kinds = type_kinds,
                         .later_words = "oscillator|grazing_map",
                         .doc = "`chain`: particles on springs of their own, of unit mass and stiffness by default, "
                                "coupled to their neighbours; `duffing_chain`: particles in series, joined by springs, "
@@ -81,7 +79,7 @@ static const schema_entry rows[KEY_BRANCH_PARAMETER] = {
          .fallback = "1",
          .low = 0,
          .high = 1,
-         .orbits_default = true,
+         .orbits_default = "impulse|dense|shooting|ritz",
          .sweep = true,
          .doc = "Speed after an impact over speed before it: one number for all, or one per particle."},
     [KEY_MODEL_MASS] = {.path = "model.mass",
@@ -90,7 +88,7 @@ static const schema_entry rows[KEY_BRANCH_PARAMETER] = {
                         .fallback = "1",
                         .low = 0,
                         .high = INFINITY,
-                        .orbits_default = true,
+                        .orbits_default = "impulse|dense",
                         .low_open = true,
                         .list = true,
                         .per_particle = true,
@@ -99,19 +97,27 @@ static const schema_entry rows[KEY_BRANCH_PARAMETER] = {
     [KEY_MODEL_STIFFNESS] =
         {.path = "model.stiffness",
          SPRING,
+         .orbits_default = "impulse|dense",
          .fallback = "1",
          ANY,
          .doc = "Linear stiffness of the springs: of a chain the on-site spring of every particle; of a Duffing chain "
                 "the one before it, which joins it to the particle before, spring 0 particle 0 to the ground."},
     [KEY_MODEL_QUADRATIC] = {.path = "model.quadratic",
                              SPRING,
+                             .orbits_default = "impulse|dense",
                              .fallback = "0",
                              ANY,
                              .doc = "Quadratic term of these springs: the force at extension x is stiffness x "
                                     "+ quadratic x^2 + cubic x^3."},
-    [KEY_MODEL_CUBIC] = {.path = "model.cubic", SPRING, .fallback = "0", ANY, .doc = "Cubic term of these springs."},
+    [KEY_MODEL_CUBIC] = {.path = "model.cubic",
+                         SPRING,
+                         .orbits_default = "impulse|dense",
+                         .fallback = "0",
+                         ANY,
+                         .doc = "Cubic term of these springs."},
     [KEY_MODEL_DAMPING] = {.path = "model.damping",
                            SPRING,
+                           .orbits_default = "impulse|dense|shooting|ritz",
                            .fallback = "0",
                            .low = 0,
                            .high = INFINITY,
@@ -135,7 +141,7 @@ static const schema_entry rows[KEY_BRANCH_PARAMETER] = {
                         .scalar = true,
                         .fallback = "null",
                         ANY,
-                        .orbits_default = true,
+                        .orbits_default = "impulse|dense",
                         .null = true,
                         .list = true,
                         .per_particle = true,
@@ -149,7 +155,7 @@ static const schema_entry rows[KEY_BRANCH_PARAMETER] = {
                          .fallback = "null",
                          .low = 0,
                          .high = INFINITY,
-                         .orbits_default = true,
+                         .orbits_default = "impulse|dense|shooting|ritz",
                          .low_open = true,
                          .null = true,
                          .sweep = true,
@@ -161,7 +167,7 @@ static const schema_entry rows[KEY_BRANCH_PARAMETER] = {
          .scalar = true,
          .fallback = "0",
          ANY,
-         .orbits_default = true,
+         .orbits_default = "impulse|dense|shooting|ritz",
          .list = true,
          .per_particle = true,
          .sweep = true,
@@ -172,7 +178,7 @@ static const schema_entry rows[KEY_BRANCH_PARAMETER] = {
                              .fallback = "1",
                              .low = 0,
                              .high = INFINITY,
-                             .orbits_default = true,
+                             .orbits_default = "impulse|dense",
                              .sweep = true,
                              .doc = "Angular frequency of the force."},
     [KEY_MODEL_PHASE] = {.path = "model.phase",
@@ -180,7 +186,7 @@ static const schema_entry rows[KEY_BRANCH_PARAMETER] = {
                          .scalar = true,
                          .fallback = "0",
                          ANY,
-                         .orbits_default = true,
+                         .orbits_default = "impulse|dense",
                          .sweep = true,
                          .doc = "Phase of the force."},
     [KEY_ORBIT_PERIOD] = {.path = "orbit.period",
@@ -286,15 +292,45 @@ static const schema_entry rows[KEY_BRANCH_PARAMETER] = {
                             "First guess of a motion whose energy is given: the normal mode of this place, from 0 in "
                             "the order of frequencies, of the linear part of the model, at rest at t = 0, with its "
                             "period and the amplitude of that energy; null: another guess."},
-    [KEY_ORBIT_METHOD] = {.path = "orbit.method",
-                          WORD,
-                          .kinds = "orbits",
-                          .fallback = "impulse",
-                          .words = "impulse|dense",
-                          .later_words = "shooting|ritz",
-                          .doc =
-                              "`impulse`: the impulse response, fast for any size; `dense`: the boundary-value problem "
-                              "with dense matrices, a reference for small chains."},
+    [KEY_ORBIT_METHOD] =
+        {.path = "orbit.method",
+         WORD,
+         .kinds = "orbits",
+         .fallback = "impulse",
+         .other_models = "duffing_chain",
+         .other_fallback = "shooting",
+         .words = "impulse|dense|shooting|ritz",
+         .word_models = method_models,
+         .doc = "`impulse`: the impulse response, fast for any size; `dense`: the boundary-value problem "
+                "with dense matrices, a reference for small chains; `shooting`: Newton's method, from the "
+                "orbit of the linear part along growing nonlinear terms; `ritz`: Ritz's method with its "
+                "error, measured against the orbit found by shooting."},
+    [KEY_ORBIT_FUNCTIONS] = {.path = "orbit.functions",
+                             .type = VALUE_INTEGER,
+                             .scalar = true,
+                             .fallback = "16",
+                             .low = 1,
+                             .high = 300,
+                             .kinds = "orbits",
+                             .sweep = true,
+                             .doc = "Most trial functions per particle of `method: ritz`."},
+    [KEY_ORBIT_CONSTANTS] = {.path = "orbit.constants",
+                             FLAG,
+                             .kinds = "orbits",
+                             .fallback = "true",
+                             .doc = "Whether constants are among them; without, the error of `method: ritz` stalls."},
+    [KEY_ORBIT_TOLERANCE] = {.path = "orbit.tolerance",
+                             .type = VALUE_NUMBER,
+                             .scalar = true,
+                             .null = true,
+                             .fallback = "null",
+                             .low = 0,
+                             .low_open = true,
+                             .high = INFINITY,
+                             .kinds = "orbits",
+                             .sweep = true,
+                             .doc = "`method: ritz` takes no more functions when the measured error is below it; null: "
+                                    "as many as `orbit.functions`."},
     [KEY_ORBIT_STATES] = {.path = "orbit.states",
                           FLAG,
                           .kinds = "orbits",

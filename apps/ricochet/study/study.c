@@ -195,6 +195,10 @@ const char *study_model(const study *s) {
   return s->values[KEY_MODEL_TYPE].text;
 }
 
+const char *study_method(const study *s) {
+  return s->values[KEY_ORBIT_METHOD].text;
+}
+
 long study_item(const study *s, study_key key, size_t particle) {
   const char *alone = schema_row(key)->last_models, *model = study_model(s);
   if (s->values[key].list)

@@ -59,6 +59,9 @@ const char *study_kind(const study *s);
 /** Type of its model, a word of the schema: "chain". */
 const char *study_model(const study *s);
 
+/** Value of orbit.method, with its default; of studies of kind `orbits`. */
+const char *study_method(const study *s);
+
 /** Place of the number of a particle in the value of a key: the particle's own in a list, that of a single number; -1
  *  where the single number is of another particle. Of keys with a value. */
 long study_item(const study *s, study_key key, size_t particle);

@@ -143,17 +143,9 @@ static int branch_evaluate(worker *w, const kind_plan *plan, uint64_t task, unsi
   return 0;
 }
 
-static int no_extra(const study *s, ric_poll poll, extra_rows *extra, message *why) {
-  (void)s;
-  (void)poll;
-  (void)why;
-  *extra = (extra_rows){0};
-  return 0;
-}
-
 const kind kind_branch = {.name = "branch",
                           .plan = branch_plan,
                           .open = branch_open,
                           .evaluate = branch_evaluate,
                           .close = branch_close,
-                          .extra = no_extra};
+                          .extra = kind_no_extra};

@@ -122,7 +122,7 @@ static ric_status take_orbit(branch_guess *g, const branch_family *b, ric_error 
   ric_shooting *shooting = NULL;
   double *z = NULL;
   motion.count = 0; /* impacts in between have times of their own, which are no linear unknowns */
-  ric_status status = lattice_model_linear(&b->model, &linear, error);
+  ric_status status = lattice_model_scaled(&b->model, 0, &linear, error);
   if (status == RIC_OK)
     status = ric_shooting_create(linear, &motion, &shooting, error);
   if (status == RIC_OK && !(z = calloc(ric_shooting_unknowns(shooting), sizeof *z)))

@@ -41,6 +41,7 @@ typedef struct extra_rows {
 
 typedef struct kind {
   const char *name;
+  const char *methods; /* of orbit.method that it is for, "impulse|dense"; NULL: all */
   /** Lays out the results; refuses a study that cannot work or cannot fit (0 or EXIT_USAGE). */
   int (*plan)(const study *s, kind_plan *plan, message *why);
   /** @param poll  handed to the library; non-zero stops a task */
@@ -55,10 +56,14 @@ typedef struct kind {
   int (*extra)(const study *s, ric_poll poll, extra_rows *extra, message *why);
 } kind;
 
-/** Kind of a study; every kind that the schema accepts is here. */
+/** Kind of a study, by its name and its method; every kind that the schema accepts is here. */
 const kind *kind_of(const study *s);
 
+/** An `extra` for kinds without such a table. */
+int kind_no_extra(const study *s, ric_poll poll, extra_rows *extra, message *why);
+
 extern const kind kind_orbits;
+extern const kind kind_orbits_shooting;
 extern const kind kind_trajectory;
 extern const kind kind_branch;
 

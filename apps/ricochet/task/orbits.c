@@ -160,27 +160,6 @@ static const char *reason_of(const worker *w) {
   return w->orbit.reason[0] ? w->orbit.reason : w->verification.reason;
 }
 
-static void fill_row(const worker *w, const table *t, unsigned char *row) {
-  const ric_orbit *o = &w->orbit;
-  memset(row, 0, t->row_bytes);
-  row_put_word(row, table_column(t, "outcome"), (int)o->outcome);
-  row_put_text(row, table_column(t, "reason"), reason_of(w));
-  row_put_numbers(row, table_column(t, "q"), o->q);
-  row_put_numbers(row, table_column(t, "v"), o->v);
-  row_put_numbers(row, table_column(t, "impulse"), o->impulse);
-  row_put_number(row, table_column(t, "energy"), o->energy);
-  row_put_number(row, table_column(t, "residual"), o->residual);
-  row_put_number(row, table_column(t, "clearance"), o->clearance);
-  row_put_number(row, table_column(t, "clearance_time"), o->clearance_time);
-  row_put_integer(row, table_column(t, "clearance_particle"), o->clearance_particle);
-  row_put_number(row, table_column(t, "condition"), o->condition);
-  row_put_integer(row, table_column(t, "mode"), o->mode);
-  row_put_integer(row, table_column(t, "harmonic"), o->harmonic);
-  row_put_word(row, table_column(t, "verified"), (int)w->verification.result);
-  row_put_number(row, table_column(t, "closure_error"), w->verification.closure_error);
-  stability_put(&w->stability, t, row);
-}
-
 static int orbits_evaluate(worker *w, const kind_plan *plan, uint64_t task, unsigned char *row, records *tails) {
   ric_error error = {0};
   (void)tails;
@@ -194,11 +173,13 @@ static int orbits_evaluate(worker *w, const kind_plan *plan, uint64_t task, unsi
   if (verify(w) == RIC_ESTOPPED ||
       stability_find(&w->stability, w->solver, &w->model.chain, w->pattern, &w->orbit) == RIC_ESTOPPED)
     return -1;
-  fill_row(w, &plan->rows, row);
+  orbits_put(&w->orbit, reason_of(w), &w->verification, &plan->rows, row);
+  stability_put(&w->stability, &plan->rows, row);
   return 0;
 }
 
 const kind kind_orbits = {.name = "orbits",
+                          .methods = "impulse|dense",
                           .plan = orbits_plan,
                           .open = orbits_open,
                           .evaluate = orbits_evaluate,

@@ -1,5 +1,7 @@
 #include "orbits.h"
 
+#include <string.h>
+
 #include "stability.h"
 
 const char *const orbit_outcome_names[RIC_OUTCOME_COUNT] = {
@@ -153,6 +155,34 @@ static const column stability_columns[] = {
      .source = "[JAP] (16)"},
 };
 
+static const column ritz_columns[] = {
+    {.name = "ritz_functions",
+     .type = COLUMN_I64,
+     .units = "1",
+     .long_name = "trial functions per particle, 0 when none were found",
+     .source = "[VID] (2)"},
+    {.name = "ritz_frequency",
+     .type = COLUMN_F64,
+     .units = "1",
+     .long_name = "angular frequency of the motion when the impact is ignored",
+     .source = "[VID] (2)"},
+    {.name = "ritz_error",
+     .type = COLUMN_F64,
+     .units = "1",
+     .long_name = "largest difference of a displacement, at any time, from the orbit found by shooting",
+     .source = "[VID] (2)"},
+    {.name = "ritz_error_v",
+     .type = COLUMN_F64,
+     .units = "1",
+     .long_name = "the same of a velocity",
+     .source = "[VID] (2)"},
+    {.name = "ritz_defect",
+     .type = COLUMN_F64,
+     .units = "1",
+     .long_name = "largest residual of the equations of motion over the largest acceleration",
+     .source = "[VID] (1a)"},
+};
+
 #define ADD(t, columns, axes, axis_count)                                                                              \
   table_add((t), (columns), sizeof(columns) / sizeof *(columns), (axes), (axis_count))
 
@@ -173,5 +203,27 @@ void orbits_lay_out(const study_values *v, table *t) {
     ADD(t, stability_columns, axes, count);
     stability_put_tolerances(t);
   }
+  if (strcmp(value_word(v, KEY_ORBIT_METHOD), "ritz") == 0)
+    ADD(t, ritz_columns, axes, count);
   table_lay_out(t);
+}
+
+void orbits_put(const ric_orbit *o, const char *reason, const ric_verification *verification, const table *t,
+                unsigned char *row) {
+  memset(row, 0, t->row_bytes);
+  row_put_word(row, table_column(t, "outcome"), (int)o->outcome);
+  row_put_text(row, table_column(t, "reason"), reason);
+  row_put_numbers(row, table_column(t, "q"), o->q);
+  row_put_numbers(row, table_column(t, "v"), o->v);
+  row_put_numbers(row, table_column(t, "impulse"), o->impulse);
+  row_put_number(row, table_column(t, "energy"), o->energy);
+  row_put_number(row, table_column(t, "residual"), o->residual);
+  row_put_number(row, table_column(t, "clearance"), o->clearance);
+  row_put_number(row, table_column(t, "clearance_time"), o->clearance_time);
+  row_put_integer(row, table_column(t, "clearance_particle"), o->clearance_particle);
+  row_put_number(row, table_column(t, "condition"), o->condition);
+  row_put_integer(row, table_column(t, "mode"), o->mode);
+  row_put_integer(row, table_column(t, "harmonic"), o->harmonic);
+  row_put_word(row, table_column(t, "verified"), (int)verification->result);
+  row_put_number(row, table_column(t, "closure_error"), verification->closure_error);
 }

@@ -61,6 +61,21 @@ ric_status stability_find(stability *s, ric_orbit_solver *solver, const ric_chai
   return RIC_OK;
 }
 
+ric_status stability_find_motion(stability *s, ric_shooting *shooting, const double *z, const ric_orbit *orbit) {
+  ric_error error = {0};
+  if (!s->wanted)
+    return RIC_OK;
+  if (!shooting || orbit->outcome == RIC_FAILED) {
+    ric_multipliers_fail(&s->found, orbit->reason);
+    return RIC_OK;
+  }
+  const ric_status status = ric_shooting_multipliers(shooting, z, orbit->period, &s->options.judge, &s->found, &error);
+  if (status == RIC_OK || status == RIC_ESTOPPED)
+    return status;
+  ric_multipliers_fail(&s->found, error.message);
+  return RIC_OK;
+}
+
 static void put_count(const stability *s, const table *t, const char *name, size_t count, unsigned char *row) {
   row_put_integer(row, table_column(t, name), s->found.stable == RIC_STABILITY_UNKNOWN ? -1 : (long long)count);
 }

@@ -35,6 +35,10 @@ void stability_clear(stability *s);
 ric_status stability_find(stability *s, ric_orbit_solver *solver, const ric_chain *chain, const ric_pattern *pattern,
                           const ric_orbit *orbit);
 
+/** The same of an even motion found by shooting.
+ *  @param shooting  NULL when there is none */
+ric_status stability_find_motion(stability *s, ric_shooting *shooting, const double *z, const ric_orbit *orbit);
+
 /** Fills its columns of a row. */
 void stability_put(const stability *s, const table *t, unsigned char *row);
 

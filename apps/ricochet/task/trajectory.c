@@ -349,17 +349,9 @@ static int trajectory_plan(const study *s, kind_plan *plan, message *why) {
   return code ? code : check_only_task(s, why);
 }
 
-static int no_extra(const study *s, ric_poll poll, extra_rows *extra, message *why) {
-  (void)s;
-  (void)poll;
-  (void)why;
-  *extra = (extra_rows){0};
-  return 0;
-}
-
 const kind kind_trajectory = {.name = "trajectory",
                               .plan = trajectory_plan,
                               .open = trajectory_open,
                               .evaluate = trajectory_evaluate,
                               .close = worker_close,
-                              .extra = no_extra};
+                              .extra = kind_no_extra};
