@@ -14,6 +14,9 @@ static const double longest_reach = 2.2;
  * steps. */
 static const double share = 0.01;
 
+/* What the first term left out of linear tangent vectors may be, at least. */
+static const double carried_error = 1e-14;
+
 /* Of the tolerance, what the last terms may be where they are measured. */
 static const double measured_share = 0.1;
 
@@ -44,6 +47,10 @@ int taylor_order(double tolerance) {
 double taylor_reach(double tolerance, int order) {
   double reach = exp((log(share * tolerance) + lgamma(order + 2.0)) / (order + 1));
   return fmin(reach, longest_reach);
+}
+
+double taylor_carried_reach(double tolerance, int order) {
+  return exp((log(fmax(carried_error, tolerance)) + lgamma(order + 2.0)) / (order + 1));
 }
 
 double taylor_rate_bound(double stiffness, double damping) {

@@ -15,6 +15,10 @@ int taylor_order(double tolerance);
 /** Longest step times |s| for linear motions, at most 2.2, which a given order may not reach. */
 double taylor_reach(double tolerance, int order);
 
+/** Longest step times |s| with which tangent vectors of linear motions go, whatever the motion itself takes: 3.3 at
+ *  order 26. A motion that leaves what is fast at rest says nothing about tangent vectors that do not. */
+double taylor_carried_reach(double tolerance, int order);
+
 /** Bound of |s| over the roots e^{s t} of q'' + C q' + K q = 0, from norms of K and C. */
 double taylor_rate_bound(double stiffness, double damping);
 

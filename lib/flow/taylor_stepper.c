@@ -17,6 +17,7 @@ void taylor_stepper_plan(taylor_stepper *s, double rate, double frequency) {
   s->order = o->order ? o->order : taylor_order(o->tolerance);
   double reach = taylor_reach(o->tolerance, s->order);
   s->longest = reach / rate;
+  s->longest_carried = taylor_carried_reach(o->tolerance, s->order) / rate;
   s->longest_forced = reach / fabs(frequency);
   s->trial = taylor_stepper_natural(s);
 }
@@ -78,6 +79,8 @@ ric_status taylor_stepper_choose(taylor_stepper *s, double stop, double limit, b
   ric_flow *f = s->flow;
   bool fixed = f->options.step > 0;
   double most = fmin(fmin(limit, f->options.longest_step), fixed ? f->options.step : s->longest_forced);
+  if (!fixed && f->tangent.columns > 0)
+    most = fmin(most, s->longest_carried);
   if (limit < INFINITY)
     s->trial = fmin(s->trial, growth_after_limit * limit);
   if (pressed || !(fixed || s->by_bound))

@@ -16,9 +16,10 @@ typedef struct taylor_stepper {
   void (*shorten)(ric_flow *flow, double length);
   bool by_bound; /* steps without Hertz contacts have the length `longest` */
   int order;
-  double longest;        /* step of the fastest linear motion; INFINITY when nothing pulls */
-  double longest_forced; /* step that the frequency of the forcing allows; INFINITY without */
-  double trial;          /* length at which the next series is made when its decay decides */
+  double longest;         /* step of the fastest linear motion; INFINITY when nothing pulls */
+  double longest_carried; /* step that tangent vectors allow, whose rates are those of the linear springs */
+  double longest_forced;  /* step that the frequency of the forcing allows; INFINITY without */
+  double trial;           /* length at which the next series is made when its decay decides */
 } taylor_stepper;
 
 /** Sets order, lengths and trial from the options of the flow.

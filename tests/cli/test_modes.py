@@ -48,6 +48,9 @@ def keys_of_a_type_of_model_are_refused_by_name(ricochet, folder):
         ("mode: 0", "period: 7, at_start: [0]", "s.yaml:3: orbit.at_start[0] = 0 has no floor or wall to hit"),
         ("orbit.energy, from", "model.wall, from", "s.yaml:3: orbit.mode without an energy"),
         ("orbit.energy, from: 0.05", "orbit.energy", "s.yaml:4: missing key branch.from (a number)"),
+        ("mode: 0}\nbranch: {parameter: orbit.energy, from: 0.05,",
+         "period: 7, at_start: [1]}\nbranch: {parameter: orbit.energy, low: 7, high: 5,",
+         "s.yaml:4: branch.low = 7, expected less than branch.high = 5"),
     ]:
         assert MODES.count(old) == 1, old
         write(folder, "s.yaml", MODES.replace(old, new))
@@ -171,6 +174,36 @@ def branches_in_the_energy_start_at_a_period(ricochet, folder):
     first = found["point_offset"][:-1]
     assert np.allclose(found["point_period"][first], [7, 14.9, 15], rtol=1e-10)
     assert np.allclose(found["point_parameter"][first], found["point_energy"][first], rtol=1e-9)
+
+
+@test
+def motions_of_a_period_before_compliant_walls_start_branches_in_the_energy(ricochet, folder):
+    """They have no impacts, whoever presses the wall."""
+    found = read(run(ricochet, folder, PERIOD, "--set", "model.hertz=1000", "--set", "sweep.values=[7]"))
+    assert found["outcome"] == ["bound"] and abs(found["point_period"][0] - 7) < 1e-9, found["reason"]
+
+
+@test
+def energies_outside_the_bounds_are_told(ricochet, folder):
+    for bound, phrase in (("low=5", "at least branch.low = 5"), ("high=1.5", "at most branch.high = 1.5")):
+        found = read(run(ricochet, folder, PERIOD, "--set", f"branch.{bound}", "--set", "sweep.values=[7]", name=bound))
+        reason = found["reason"][0].decode()
+        assert found["outcome"] == ["failed_start"] and reason.startswith("the branch would start at the energy 1.62582"), reason
+        assert reason.endswith(f"expected {phrase}"), reason
+
+
+@test
+def branches_go_on_from_modes_that_a_sweep_names(ricochet, folder):
+    """The mode was the first guess there: here it is the state. Along the period, its energy is no longer given."""
+    found = read(run(ricochet, folder, SWEPT))
+    special = first_special(found, "grazing", 1) - found["special_offset"][1]
+    restart = f"restart: {{file: s.h5, task: 1, special: {special}}}\n"
+    for parameter, value in (("orbit.energy", "special_energy"), ("orbit.period", "special_period")):
+        branch = f"branch: {{parameter: {parameter}, to: 9, high: 9, points: 5}}\n"
+        text = MODES.replace(ENERGY, branch).replace("orbit: {mode: 0}\n", "orbit: {motion: even}\n") + restart
+        went = read(run(ricochet, folder, text, name=parameter))
+        assert abs(went["point_parameter"][0] - found[value][found["special_offset"][1] + special]) < 1e-10
+        assert went["points"][0] > 1, went["outcome"]
 
 
 @test

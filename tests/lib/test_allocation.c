@@ -1,20 +1,13 @@
-/* Solving again allocates nothing: every allocation of this process passes through the functions below. They stand in
- * the executable, so that the shared libraries are bound to them, and hand on to the ones of the C library. Buffers
- * that FFTW takes inside some of its transforms are its own affair: allocations called from it are not counted. */
-#define _GNU_SOURCE /* dladdr */
-
+/* Solving again allocates nothing, and what is refused memory says so. */
 #include "support.h"
 
-#include <dlfcn.h>
-#include <errno.h>
-#include <stdbool.h>
-
+#include "allocation_counter.h"
 #include "approximated.h"
 #include "forced_oscillator.h"
 #include "scenario/family_scenario.h"
 #include "solved.h"
 
-#if defined(__SANITIZE_ADDRESS__) || !defined(__GLIBC__)
+#ifndef ALLOCATIONS_ARE_COUNTED
 
 static void another_allocator_stands_in_the_way(void **state) {
   (void)state;
@@ -27,71 +20,6 @@ int main(void) {
 }
 
 #else
-
-#define VISIBLE __attribute__((visibility("default"))) /* to the shared libraries */
-
-static size_t allocations;
-static size_t live, most_live; /* bytes */
-
-void *__libc_malloc(size_t size);
-void *__libc_calloc(size_t count, size_t size);
-void *__libc_realloc(void *block, size_t size);
-void *__libc_memalign(size_t alignment, size_t size);
-void __libc_free(void *block);
-void *memalign(size_t alignment, size_t size);
-size_t malloc_usable_size(void *block);
-
-static bool watching;
-static size_t until_refusal; /* the so many-th request from now on is refused; 0: none is */
-
-static bool is_refused(void) {
-  return until_refusal > 0 && --until_refusal == 0;
-}
-
-/* Whether an address lies in FFTW. */
-static bool in_fftw(void *address) {
-  Dl_info where;
-  return dladdr(address, &where) != 0 && where.dli_fname != NULL && strstr(where.dli_fname, "libfftw3") != NULL;
-}
-
-static void *counted(void *block, void *caller) {
-  if (!watching || !in_fftw(caller))
-    allocations++;
-  live += malloc_usable_size(block);
-  most_live = live > most_live ? live : most_live;
-  return block;
-}
-
-VISIBLE void *malloc(size_t size) {
-  return is_refused() ? NULL : counted(__libc_malloc(size), __builtin_return_address(0));
-}
-
-VISIBLE void *calloc(size_t count, size_t size) {
-  return is_refused() ? NULL : counted(__libc_calloc(count, size), __builtin_return_address(0));
-}
-
-VISIBLE void *realloc(void *block, size_t size) {
-  live -= malloc_usable_size(block);
-  return counted(__libc_realloc(block, size), __builtin_return_address(0));
-}
-
-VISIBLE void *memalign(size_t alignment, size_t size) {
-  return counted(__libc_memalign(alignment, size), __builtin_return_address(0));
-}
-
-VISIBLE void *aligned_alloc(size_t alignment, size_t size) {
-  return counted(__libc_memalign(alignment, size), __builtin_return_address(0));
-}
-
-VISIBLE int posix_memalign(void **block, size_t alignment, size_t size) {
-  *block = counted(__libc_memalign(alignment, size), __builtin_return_address(0));
-  return *block ? 0 : ENOMEM;
-}
-
-VISIBLE void free(void *block) {
-  live -= malloc_usable_size(block);
-  __libc_free(block);
-}
 
 /* Solves with changing coupling and period; returns the allocations of all but the first. */
 static size_t allocations_of_repeats(scenario s) {

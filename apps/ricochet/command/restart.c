@@ -92,6 +92,17 @@ static void assign_from(assignments *a, const study *s, const study_values *v, c
     assign_number(a, "branch.from", value_number(v, followed->key, followed->item < 0 ? 0 : (size_t)followed->item));
 }
 
+/* Whether a number that varies in the result is of no use here: it belongs to the first guess there, in the place of
+ * which the state and its impacts have come, or it is the energy of a motion whose period is to be followed. */
+static bool is_done_with(const study *s, const char *name) {
+  static const char *const guesses[] = {"start.",        "orbit.excited",  "orbit.mode", "orbit.at_start",
+                                        "orbit.at_half", "orbit.sequence", "orbit.times"};
+  for (size_t i = 0; i < sizeof guesses / sizeof *guesses; i++)
+    if (strncmp(name, guesses[i], strlen(guesses[i])) == 0)
+      return true;
+  return study_followed(s)->key == KEY_ORBIT_PERIOD && strcmp(name, "orbit.energy") == 0;
+}
+
 /* The numbers that vary in the result, but those that vary in the study. */
 static void assign_numbers(assignments *a, const study *s, const study_values *v, const result_motion *m) {
   const char *followed = study_followed(s)->key == KEY_COUNT ? "" : study_followed(s)->name;
@@ -101,7 +112,7 @@ static void assign_numbers(assignments *a, const study *s, const study_values *v
     if (strcmp(n->name, followed) == 0) {
       assign_number(a, "branch.from", n->value);
       known = true;
-    } else if (!is_swept(s, n->name))
+    } else if (!is_swept(s, n->name) && !is_done_with(s, n->name))
       assign_number(a, n->name, n->value);
   }
   if (!known)

@@ -164,15 +164,26 @@ static int check_from(const study *s, const document *d, message *why) {
   return 0;
 }
 
+/* Of a start that only the run tells: what can be said of the bounds without it. */
+static int check_bounds(const study *s, const document *d, message *why) {
+  const study_key low = KEY_BRANCH_LOW, high = KEY_BRANCH_HIGH;
+  char small[32], large[32];
+  if (!is_set(s, low) || !is_set(s, high) || first(s, low) < first(s, high))
+    return check_log(s, d, why);
+  return document_refuse(d, s->values[low].node, why, "%s = %s, expected less than %s = %s", schema_row(low)->path,
+                         shown(first(s, low), small, sizeof small), schema_row(high)->path,
+                         shown(first(s, high), large, sizeof large));
+}
+
 /* The start lies within the bounds, with room on one side. */
 static int check_range(const study *s, const document *d, message *why) {
-  const double to = first(s, KEY_BRANCH_TO), from = starts_at_period(s) ? to : first(s, KEY_BRANCH_FROM);
+  const double to = first(s, KEY_BRANCH_TO), from = first(s, KEY_BRANCH_FROM);
   const double low = is_set(s, KEY_BRANCH_LOW) ? first(s, KEY_BRANCH_LOW) : fmin(from, to);
   const double high = is_set(s, KEY_BRANCH_HIGH) ? first(s, KEY_BRANCH_HIGH) : fmax(from, to);
   char start[32], bound[32];
   shown(from, start, sizeof start);
   if (starts_at_period(s))
-    return check_log(s, d, why);
+    return check_bounds(s, d, why);
   if (from == to)
     return document_refuse(d, s->values[KEY_BRANCH_TO].node, why,
                            "branch.to = %s is where the branch starts, expected another value", start);

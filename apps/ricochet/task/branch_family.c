@@ -245,10 +245,23 @@ ric_status branch_family_open(branch_family *b, ric_poll poll, ric_error *error)
   return ric_shooting_create(b->system, &motion, &b->first, error);
 }
 
+/* The energy at which a branch starts lies within the bounds that the study gives. */
+static ric_status check_energy(const branch_family *b, double energy, ric_error *error) {
+  const double low = value_number(b->values, KEY_BRANCH_LOW, 0), high = value_number(b->values, KEY_BRANCH_HIGH, 0);
+  if (energy < low)
+    return ric_fail(error, RIC_EINVAL, "the branch would start at the energy %g, expected at least branch.low = %g",
+                    energy, low);
+  if (high > -INFINITY && energy > high)
+    return ric_fail(error, RIC_EINVAL, "the branch would start at the energy %g, expected at most branch.high = %g",
+                    energy, high);
+  return RIC_OK;
+}
+
 ric_status branch_family_begin(branch_family *b, double energy, ric_error *error) {
   if (b->log && !(energy > 0))
     return ric_fail(error, RIC_EINVAL, "the branch would start at the energy %g, expected a number > 0 with scale: log",
                     energy);
+  RIC_TRY(check_energy(b, energy, error));
   study_values_begin(b->values, energy);
   return make_family(b, error);
 }

@@ -27,7 +27,8 @@ void branch_family_clear(branch_family *b);
  *  motion of the period, the equations of that one in place of the family.
  *  @returns as ric_family_create, RIC_EINVAL for impacts without an obstacle */
 ric_status branch_family_open(branch_family *b, ric_poll poll, ric_error *error);
-/** The family, at the energy of that motion. @returns as ric_family_create, RIC_EINVAL for one that has no logarithm */
+/** The family, at the energy of that motion.
+ *  @returns as ric_family_create, RIC_EINVAL for one that has no logarithm or lies outside the bounds of the study */
 ric_status branch_family_begin(branch_family *b, double energy, ric_error *error);
 /** Destroys them. */
 void branch_family_close(branch_family *b);

@@ -162,7 +162,7 @@ static ric_status take_solution(branch_guess *g, const branch_family *b, const d
                                 ric_error *error) {
   const size_t n = particles_of(b->values);
   ric_orbit orbit = {0};
-  ric_status status = ric_orbit_init(&orbit, n, ric_shooting_impacts(b->first), error);
+  ric_status status = ric_orbit_init_for(&orbit, b->system, ric_shooting_impacts(b->first), error);
   if (status == RIC_OK)
     status = ric_shooting_orbit(b->first, z, g->period, &orbit, error);
   if (status == RIC_OK) {
