@@ -172,9 +172,10 @@ ric_status shooting_look(ric_shooting *s, const double *z, double given, int wha
   double *residual = F ? F : s->residual;
   RIC_TRY(reserve(&l, error));
   RIC_TRY(shooting_period(s, z, given, &l.period, error));
-  s->out_of_order = false;
-  if (l.orbit)
+  if (l.orbit) {
+    s->out_of_order = false;
     shooting_gaps_reset(s->gaps);
+  }
   RIC_TRY(shooting_evaluate(s, z, given, residual, J, F_given, &observer, error));
   return l.orbit ? finish_orbit(&l, residual, error) : RIC_OK;
 }

@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "even_start.h"
+
 static const double pi = 3.14159265358979323846;
 
 int branch_guess_init(branch_guess *g, size_t particles) {
@@ -106,36 +108,16 @@ static void take_unknowns(branch_guess *g, const branch_family *b, const ric_sho
   }
 }
 
-/* A linear problem: Newton's method takes one step from rest. */
-static ric_status solve_linear(branch_guess *g, ric_shooting *shooting, double *z, ric_error *error) {
-  RIC_TRY(ric_shooting_guess(shooting, g->q, g->v, NULL, g->period, z, error));
-  ric_error why = {0};
-  const ric_status status = ric_shooting_solve(shooting, z, g->period, 0, NULL, &why);
-  if (status == RIC_ENUMERIC)
-    return ric_fail(error, RIC_EINVAL, "no first guess: the linear part has no such motion: %.150s", why.message);
-  return status == RIC_OK ? RIC_OK : ric_fail(error, status, "%s", why.message);
-}
-
 static ric_status take_orbit(branch_guess *g, const branch_family *b, ric_error *error) {
   ric_shooting_problem motion = branch_family_motion(b, true);
-  ric_system *linear = NULL;
-  ric_shooting *shooting = NULL;
-  double *z = NULL;
+  even_start e;
   motion.count = 0; /* impacts in between have times of their own, which are no linear unknowns */
-  ric_status status = lattice_model_scaled(&b->model, 0, &linear, error);
-  if (status == RIC_OK)
-    status = ric_shooting_create(linear, &motion, &shooting, error);
-  if (status == RIC_OK && !(z = calloc(ric_shooting_unknowns(shooting), sizeof *z)))
-    status = ric_fail(error, RIC_ENOMEM, "no memory for the motion of the linear part");
-  if (status == RIC_OK)
-    status = solve_linear(g, shooting, z, error);
+  const ric_status status = even_start_begin(&e, &b->model, &motion, g->period, error);
   if (status == RIC_OK) {
-    take_unknowns(g, b, &motion, z);
+    take_unknowns(g, b, &motion, e.z);
     press(g, b, &motion);
   }
-  free(z);
-  ric_shooting_destroy(&shooting);
-  ric_system_destroy(&linear);
+  even_start_clear(&e);
   return status;
 }
 

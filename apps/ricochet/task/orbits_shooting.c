@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "even_start.h"
 #include "kind.h"
-#include "lattice_model.h"
 #include "machine.h"
 #include "orbits.h"
 #include "stability.h"
@@ -25,9 +25,7 @@ struct worker {
   lattice_model model;
   size_t *hits; /* [impacts] obstacles of orbit.at_start, then those of at_half */
   size_t starts, halves;
-  ric_system *system; /* of the present task, as what follows */
-  ric_family *family;
-  double *z; /* [unknowns] */
+  even_start found; /* of the present task, as what follows */
   ric_orbit orbit;
   ric_verification verification;
   stability stability;
@@ -83,22 +81,16 @@ static int shooting_plan(const study *s, kind_plan *plan, message *why) {
   return code;
 }
 
-static void forget(worker *w) {
-  ric_family_destroy(&w->family);
-  ric_system_destroy(&w->system);
-}
-
 static void shooting_close(worker **out) {
   worker *w = *out;
   if (!w)
     return;
-  forget(w);
+  even_start_clear(&w->found);
   stability_clear(&w->stability);
   ric_orbit_clear(&w->orbit);
   lattice_model_clear(&w->model);
   study_values_destroy(&w->values);
   free(w->hits);
-  free(w->z);
   free(w);
   *out = NULL;
 }
@@ -115,8 +107,7 @@ static int shooting_open(const study *s, ric_poll poll, worker **out, message *w
   w->starts = value_count(w->values, KEY_ORBIT_AT_START);
   w->halves = value_count(w->values, KEY_ORBIT_AT_HALF);
   w->hits = calloc(w->starts + w->halves + 1, sizeof *w->hits);
-  w->z = calloc(n, sizeof *w->z);
-  ric_status status = w->hits && w->z ? RIC_OK : ric_fail(&error, RIC_ENOMEM, "no memory for %zu particles", n);
+  ric_status status = w->hits ? RIC_OK : ric_fail(&error, RIC_ENOMEM, "no memory for %zu particles", n);
   if (status == RIC_OK)
     status = ric_orbit_init(&w->orbit, n, w->starts + w->halves, &error);
   if (status == RIC_OK)
@@ -141,66 +132,20 @@ static ric_status find_hits(worker *w, study_key key, size_t count, size_t *hits
   return RIC_OK;
 }
 
-/* The parameter is the factor of the nonlinear terms. */
-static ric_status set_factor(ric_system *system, const double *p, double *given, void *user, ric_error *error) {
-  const worker *w = user;
-  (void)given;
-  return lattice_model_rescale(&w->model, p[0], system, error);
-}
-
-static ric_status make_family(worker *w, double period, ric_error *error) {
-  const ric_family_problem problem = {.system = w->system,
-                                      .motion = {.kind = RIC_MOTION_EVEN,
-                                                 .at_start = w->hits,
-                                                 .start_count = w->starts,
-                                                 .at_half = w->hits + w->starts,
-                                                 .half_count = w->halves,
-                                                 .flow = ric_flow_options_default(),
-                                                 .poll = w->poll},
-                                      .set = set_factor,
-                                      .user = w,
-                                      .parameters = 1,
-                                      .given = period};
-  ric_family_options options = ric_family_options_default();
-  options.multipliers = false;
-  options.curve.p_low = 0;
-  options.curve.p_high = 1;
-  options.curve.direction = 1;
-  options.curve.step = 0.25;
-  options.curve.step_most = 1;
-  return ric_family_create(&problem, &options, &w->family, error);
-}
-
-static int keep_last(const ric_family_point *point, void *user) {
-  worker *w = user;
-  memcpy(w->z, point->z, point->unknowns * sizeof *w->z);
-  return 0;
-}
-
-/* From the motion of the linear part, which Newton's method finds from rest, along growing nonlinear terms. */
-static ric_status find_motion(worker *w, double period, ric_error *error) {
-  ric_curve_run run = {0};
-  double *rest = calloc(w->model.lattice.particles, sizeof *rest);
-  ric_status status = rest ? ric_family_start(w->family, 0, rest, rest, NULL, period, w->z, NULL, error)
-                           : ric_fail(error, RIC_ENOMEM, "no memory for a state");
-  if (status == RIC_OK)
-    status = ric_family_follow(w->family, w->z, 0, NULL, keep_last, w, &run, error);
-  free(rest);
-  RIC_TRY(status);
-  if (run.end != RIC_CURVE_BOUND)
-    return ric_fail(error, RIC_ENUMERIC,
-                    "the orbit of the linear part does not continue to all nonlinear terms: %.120s", run.reason);
-  return lattice_model_rescale(&w->model, 1, w->system, error);
-}
-
 static ric_status solve(worker *w, double period, ric_error *error) {
   lattice_model_read(&w->model, w->values);
   RIC_TRY(find_hits(w, KEY_ORBIT_AT_START, w->starts, w->hits, error));
   RIC_TRY(find_hits(w, KEY_ORBIT_AT_HALF, w->halves, w->hits + w->starts, error));
-  RIC_TRY(lattice_model_scaled(&w->model, 0, &w->system, error));
-  RIC_TRY(make_family(w, period, error));
-  RIC_TRY(find_motion(w, period, error));
-  return ric_shooting_orbit(ric_family_shooting(w->family), w->z, period, &w->orbit, error);
+  const ric_shooting_problem motion = {.kind = RIC_MOTION_EVEN,
+                                       .at_start = w->hits,
+                                       .start_count = w->starts,
+                                       .at_half = w->hits + w->starts,
+                                       .half_count = w->halves,
+                                       .flow = ric_flow_options_default(),
+                                       .poll = w->poll};
+  RIC_TRY(even_start_begin(&w->found, &w->model, &motion, period, error));
+  RIC_TRY(even_start_continue(&w->found, error));
+  return ric_shooting_orbit(ric_family_shooting(w->found.family), w->found.z, period, &w->orbit, error);
 }
 
 /* --- what else is said of it --- */
@@ -219,9 +164,10 @@ static ric_status run_events(worker *w, ric_error *error) {
     promises[k] = (ric_promise){half ? period / 2 : period, half ? w->hits[w->starts + k] : w->hits[k - w->halves]};
   }
   if (status == RIC_OK)
-    status = ric_shooting_states(ric_family_shooting(w->family), w->z, period, 5, states, states + 5 * n, error);
+    status =
+        ric_shooting_states(ric_family_shooting(w->found.family), w->found.z, period, 5, states, states + 5 * n, error);
   if (status == RIC_OK)
-    status = ric_verify(w->system, period / 4, states + n, states + 6 * n, period, promises, impacts, &options,
+    status = ric_verify(w->found.system, period / 4, states + n, states + 6 * n, period, promises, impacts, &options,
                         &w->verification, error);
   free(promises);
   free(states);
@@ -247,17 +193,17 @@ static ric_status verify(worker *w) {
 /* The orbit's state and energy become those of the approximation. */
 static ric_status take_ritz(worker *w, ric_ritz *ritz, double *c, ric_error *error) {
   const double period = w->orbit.period, tolerance = value_number(w->values, KEY_ORBIT_TOLERANCE, 0);
-  ric_shooting *shooting = ric_family_shooting(w->family);
+  ric_shooting *shooting = ric_family_shooting(w->found.family);
   const ric_status status =
-      ric_ritz_refine(ritz, shooting, w->z, period, tolerance > 0 ? tolerance : 0, c, &w->ritz.error, error);
+      ric_ritz_refine(ritz, shooting, w->found.z, period, tolerance > 0 ? tolerance : 0, c, &w->ritz.error, error);
   if (status != RIC_OK && !(status == RIC_ENUMERIC && w->ritz.error < INFINITY))
     return status;
-  RIC_TRY(ric_ritz_error(ritz, c, period, shooting, w->z, NULL, &w->ritz.error_v, error));
+  RIC_TRY(ric_ritz_error(ritz, c, period, shooting, w->found.z, NULL, &w->ritz.error_v, error));
   w->ritz.functions = ric_ritz_functions(ritz);
   w->ritz.frequency = c[ric_ritz_unknowns(ritz) - 1];
   w->ritz.defect = ric_ritz_defect(ritz, c, period);
   ric_ritz_state(ritz, c, period, 0, w->orbit.q, w->orbit.v);
-  w->orbit.energy = ric_system_energy(w->system, 0, w->orbit.q, w->orbit.v);
+  w->orbit.energy = ric_system_energy(w->found.system, 0, w->orbit.q, w->orbit.v);
   return status;
 }
 
@@ -272,7 +218,7 @@ static ric_status approximate(worker *w) {
     return RIC_OK;
   options.functions = (size_t)value_number(w->values, KEY_ORBIT_FUNCTIONS, 0);
   options.constants = value_flag(w->values, KEY_ORBIT_CONSTANTS);
-  ric_status status = ric_ritz_create(w->system, w->hits[0], &options, &ritz, &error);
+  ric_status status = ric_ritz_create(w->found.system, w->hits[0], &options, &ritz, &error);
   if (status == RIC_OK && !(c = calloc(ric_ritz_unknowns(ritz), sizeof *c)))
     status = ric_fail(&error, RIC_ENOMEM, "no memory for the coefficients");
   if (status == RIC_OK)
@@ -313,10 +259,11 @@ static int shooting_evaluate_task(worker *w, const kind_plan *plan, uint64_t tas
   if (status != RIC_ESTOPPED)
     status = verify(w);
   if (status != RIC_ESTOPPED)
-    status = stability_find_motion(&w->stability, w->family ? ric_family_shooting(w->family) : NULL, w->z, &w->orbit);
+    status = stability_find_motion(&w->stability, w->found.family ? ric_family_shooting(w->found.family) : NULL,
+                                   w->found.z, &w->orbit);
   if (status != RIC_ESTOPPED)
     status = approximate(w);
-  forget(w);
+  even_start_clear(&w->found);
   if (status == RIC_ESTOPPED)
     return -1;
   fill_row(w, &plan->rows, row);
