@@ -44,6 +44,7 @@ def keys_of_a_type_of_model_are_refused_by_name(ricochet, folder):
         ("orbit.energy, from", "model.gamma, from", f"s.yaml:4: branch.parameter = model.gamma {but}"),
         ("[3, 1]", "[3, 1, 1]", "s.yaml:2: model.stiffness has 3 elements, expected 2"),
         ("mode: 0", "mode: 2", "s.yaml:3: orbit.mode = 2 is out of range, expected a mode from 0 to 1"),
+        ("mode: 0", "mode: 0, period: 7", "s.yaml:3: orbit.period, but orbit.mode brings its own, expected one of them"),
         ("mode: 0", "mode: 0, at_start: [1]", "s.yaml:3: orbit.mode gives a first guess, and so do the impacts"),
         ("mode: 0", "period: 7, at_start: [0]", "s.yaml:3: orbit.at_start[0] = 0 has no floor or wall to hit"),
         ("orbit.energy, from", "model.wall, from", "s.yaml:3: orbit.mode without an energy"),

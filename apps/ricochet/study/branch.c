@@ -418,6 +418,9 @@ static int check_guess(const study *s, const document *d, message *why) {
   if (!motion_is(s, "even") && listed)
     return refuse_key(s, d, s->values[KEY_ORBIT_AT_START].count > 0 ? KEY_ORBIT_AT_START : KEY_ORBIT_AT_HALF, why,
                       "expected the impacts in orbit.sequence");
+  if (mode && s->values[KEY_ORBIT_PERIOD].present)
+    return document_refuse(d, check_node_of_key(s, KEY_ORBIT_PERIOD), why,
+                           "orbit.period, but orbit.mode brings its own, expected one of them");
   if (mode && excited)
     return document_refuse(d, check_node_of_key(s, KEY_ORBIT_MODE), why,
                            "orbit.mode gives a first guess, and so does orbit.excited, expected one of them");
