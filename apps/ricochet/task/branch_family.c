@@ -125,19 +125,6 @@ void branch_family_clear(branch_family *b) {
 
 /* --- the problem --- */
 
-/* Obstacles of a list of particles: their floors, or their walls where they have no floor. */
-static ric_status read_hits(const branch_family *b, study_key key, size_t *hits, ric_error *error) {
-  for (size_t i = 0; i < value_count(b->values, key); i++) {
-    const size_t particle = (size_t)value_number(b->values, key, i);
-    hits[i] = lattice_model_obstacle(&b->model, particle, +1);
-    if (hits[i] == SIZE_MAX)
-      hits[i] = lattice_model_obstacle(&b->model, particle, -1);
-    if (hits[i] == SIZE_MAX)
-      return ric_fail(error, RIC_EINVAL, "particle %zu has no obstacle to hit", particle);
-  }
-  return RIC_OK;
-}
-
 /* Nothing jumps at a Hertz contact: the particles that press it are part of the guess only. */
 static bool is_compliant(const study_values *v) {
   return value_number(v, KEY_MODEL_HERTZ, 0) > 0;
@@ -146,9 +133,9 @@ static bool is_compliant(const study_values *v) {
 static ric_status read_impacts(branch_family *b, ric_error *error) {
   const study_values *v = b->values;
   const size_t starts = value_count(v, KEY_ORBIT_AT_START), halves = value_count(v, KEY_ORBIT_AT_HALF);
-  RIC_TRY(read_hits(b, KEY_ORBIT_AT_START, b->hits, error));
-  RIC_TRY(read_hits(b, KEY_ORBIT_AT_HALF, b->hits + starts, error));
-  RIC_TRY(read_hits(b, KEY_ORBIT_SEQUENCE, b->hits + starts + halves, error));
+  RIC_TRY(lattice_model_hits(&b->model, b->values, KEY_ORBIT_AT_START, b->hits, error));
+  RIC_TRY(lattice_model_hits(&b->model, b->values, KEY_ORBIT_AT_HALF, b->hits + starts, error));
+  RIC_TRY(lattice_model_hits(&b->model, b->values, KEY_ORBIT_SEQUENCE, b->hits + starts + halves, error));
   for (size_t i = 0; i < value_count(v, KEY_ORBIT_TIMES); i++)
     b->times[i] = value_number(v, KEY_ORBIT_TIMES, i);
   return RIC_OK;

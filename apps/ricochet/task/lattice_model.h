@@ -36,4 +36,9 @@ ric_status lattice_model_rescale(const lattice_model *m, double factor, ric_syst
 /** Index of the obstacle of a particle, side +1 floor, -1 wall; SIZE_MAX when it has none. */
 size_t lattice_model_obstacle(const lattice_model *m, size_t particle, int side);
 
+/** Obstacles of the particles that a key lists: their floors, or their walls where they have no floor.
+ *  @param hits  set, one for each. @returns RIC_EINVAL for a particle without an obstacle */
+ric_status lattice_model_hits(const lattice_model *m, const study_values *v, study_key key, size_t *hits,
+                              ric_error *error);
+
 #endif

@@ -120,22 +120,10 @@ static int shooting_open(const study *s, ric_poll poll, worker **out, message *w
 
 /* --- the motion --- */
 
-static ric_status find_hits(worker *w, study_key key, size_t count, size_t *hits, ric_error *error) {
-  for (size_t k = 0; k < count; k++) {
-    const size_t particle = (size_t)value_number(w->values, key, k);
-    hits[k] = lattice_model_obstacle(&w->model, particle, +1);
-    if (hits[k] == SIZE_MAX)
-      hits[k] = lattice_model_obstacle(&w->model, particle, -1);
-    if (hits[k] == SIZE_MAX)
-      return ric_fail(error, RIC_EINVAL, "particle %zu has no floor or wall to hit", particle);
-  }
-  return RIC_OK;
-}
-
 static ric_status solve(worker *w, double period, ric_error *error) {
   lattice_model_read(&w->model, w->values);
-  RIC_TRY(find_hits(w, KEY_ORBIT_AT_START, w->starts, w->hits, error));
-  RIC_TRY(find_hits(w, KEY_ORBIT_AT_HALF, w->halves, w->hits + w->starts, error));
+  RIC_TRY(lattice_model_hits(&w->model, w->values, KEY_ORBIT_AT_START, w->hits, error));
+  RIC_TRY(lattice_model_hits(&w->model, w->values, KEY_ORBIT_AT_HALF, w->hits + w->starts, error));
   const ric_shooting_problem motion = {.kind = RIC_MOTION_EVEN,
                                        .at_start = w->hits,
                                        .start_count = w->starts,
@@ -249,7 +237,7 @@ static void fill_row(const worker *w, const table *t, unsigned char *row) {
   row_put_number(row, table_column(t, "ritz_defect"), w->ritz.defect);
 }
 
-static int shooting_evaluate_task(worker *w, const kind_plan *plan, uint64_t task, unsigned char *row, records *tails) {
+static int shooting_evaluate(worker *w, const kind_plan *plan, uint64_t task, unsigned char *row, records *tails) {
   ric_error error = {0};
   (void)tails;
   study_values_at(w->values, task);
@@ -274,6 +262,6 @@ const kind kind_orbits_shooting = {.name = "orbits",
                                    .methods = "shooting|ritz",
                                    .plan = shooting_plan,
                                    .open = shooting_open,
-                                   .evaluate = shooting_evaluate_task,
+                                   .evaluate = shooting_evaluate,
                                    .close = shooting_close,
                                    .extra = kind_no_extra};
