@@ -94,19 +94,32 @@ static ric_status trial_inside(const search *s) {
   return status;
 }
 
+/* Whether the trial, where the error of the bracket's cubic is about its largest, has been moved by no more than places
+ * are known to. That says nothing of the cubic's tangent, nor near a branch point, where corrections tell little. */
+static bool cubic_suffices(const search *s) {
+  ric_curve *c = s->c;
+  if (s->kind != RIC_CURVE_TEST || holds_branch_point(c))
+    return false;
+  cubic q = bracket_cubic(s);
+  cubic_point(&q, c->trial.sigma, c->z);
+  return curve_distance(c, c->z, c->trial.x) <= c->options.locate_tol * (1 + curve_norm(c, c->trial.x));
+}
+
 /* Shortens the bracket as far as the corrector gets.
  * @param found  whether the function is defined at all trials */
 static ric_status shorten(const search *s, bool *found) {
   ric_curve *c = s->c;
   double end = fmax(shortest * (c->high.sigma - c->low.sigma), c->options.locate_tol);
+  bool exact = false;
   *found = true;
-  while (c->high.sigma - c->low.sigma > end && *found) {
+  while (c->high.sigma - c->low.sigma > end && *found && !exact) {
     ric_status status = trial_inside(s);
     if (status == RIC_ENUMERIC)
       return RIC_OK;
     RIC_TRY(status);
     double value = value_of(s, &c->trial);
     *found = !isnan(value);
+    exact = cubic_suffices(s);
     curve_node_copy(c, sign_changes(value_of(s, &c->low), value) ? &c->high : &c->low, &c->trial);
   }
   return RIC_OK;
@@ -117,11 +130,11 @@ static bool stays(const ric_curve *c, const curve_node *before, const curve_node
   return curve_distance(c, before->x, after->x) <= c->options.locate_tol * (1 + curve_norm(c, before->x));
 }
 
-/* An end of the bracket that is still a point of the walk is corrected once more: its tangent is as good as its last
- * correction was small, which is not enough for a zero close by. */
+/* An end of the bracket that is still a point of the walk is corrected once more where the function is made of the
+ * factors at it: its tangent is as good as its last correction was small, which is not enough for a zero close by. */
 static ric_status sharpen(const search *s, curve_node *end, const curve_node *walked) {
   ric_curve *c = s->c;
-  if (end->sigma != walked->sigma)
+  if (s->kind == RIC_CURVE_TEST || end->sigma != walked->sigma)
     return RIC_OK;
   curve_node_copy(c, &c->trial, end);
   ric_status status = correct(s, &c->trial);

@@ -1,6 +1,7 @@
 #include "ricochet/family.h"
 
 #include <math.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -183,6 +184,7 @@ ric_status ric_family_create(const ric_family_problem *problem, const ric_family
     return ric_fail(error, RIC_ENOMEM, "no memory for a family");
   f->problem = *problem;
   f->options = o;
+  f->coincide = SIZE_MAX;
   family_forget(f);
   ric_status status = build(f, error);
   if (status == RIC_OK)

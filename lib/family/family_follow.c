@@ -66,6 +66,7 @@ ric_status ric_family_follow(ric_family *f, double *z, double parameter, const d
                              ric_error *error) {
   ric_error own;
   follower w = {.f = f, .point = point, .user = user, .run = run, .error = error ? error : &own};
+  f->coincide = SIZE_MAX;
   family_forget(f);
   RIC_TRY(ric_curve_follow(f->curve, z, parameter, tangent, show, &w, run, w.error));
   return w.status;

@@ -35,6 +35,7 @@ struct ric_family {
   ric_multipliers multipliers;
   double *seen_z, seen_at[2]; /* [unknowns] the point at which a run has looked, and parameters; NaN: none */
   bool judged;                /* orbit and multipliers are complete, too */
+  size_t coincide;            /* pairs of multipliers that coincide at all points of this walk */
   double *block;
 };
 

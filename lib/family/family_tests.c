@@ -28,20 +28,17 @@ ric_status family_see(ric_family *f, const double *z, double *F, double *J, doub
   return RIC_OK;
 }
 
-static bool is_near(double a, double b, double tolerance) {
-  return fabs(a - b) <= tolerance * (1 + fabs(a));
-}
-
-/* Whether the last run was along this motion, or, with a tolerance, along one that was corrected to it by no more: what
- * it has seen is as exact as points are. */
+/* Whether the last run was along this motion, or, with a tolerance, along one that was corrected to it by no more, in
+ * the measure of the curve: what it has seen is as exact as points are. */
 static bool was_seen(const ric_family *f, const double *z, double tolerance) {
-  double square = 0, size = 0;
+  double change = f->at[0] - f->seen_at[0], moved = 0, size = 0, n = (double)f->unknowns;
+  if (f->at[1] != f->seen_at[1])
+    return false;
   for (size_t i = 0; i < f->unknowns; i++) {
-    square += (z[i] - f->seen_z[i]) * (z[i] - f->seen_z[i]);
-    size = fmax(size, fabs(z[i]));
+    moved += (z[i] - f->seen_z[i]) * (z[i] - f->seen_z[i]);
+    size += z[i] * z[i];
   }
-  return is_near(f->at[0], f->seen_at[0], tolerance) && is_near(f->at[1], f->seen_at[1], 0) &&
-         sqrt(square / (double)f->unknowns) <= tolerance * (1 + size);
+  return sqrt(moved / n + change * change) <= tolerance * (1 + sqrt(size / n + f->at[0] * f->at[0]));
 }
 
 ric_status family_look(ric_family *f, const double *z, ric_error *error) {
@@ -94,39 +91,64 @@ typedef struct meeting {
   double place; /* real part */
 } meeting;
 
-/* The two that are nearest to each other, but for those that a symmetry makes coincide; and the largest imaginary part.
- */
-static meeting nearest_two(const ric_family *f, double *across) {
+/* How near two alpha may be that are one. */
+static double same(const ric_family *f, double complex a) {
+  return coincidence * (1 + cabs(a) + f->multipliers.largest / 1000);
+}
+
+/* The two that are nearest to each other, but for those that coincide. @param coincide  set to how many do
+ * @param common  set to where some of those are */
+static meeting nearest_different(const ric_family *f, size_t *coincide, double *common) {
   meeting m = {INFINITY, NAN};
-  *across = 0;
+  *coincide = 0;
+  for (size_t i = 0; i < alpha_count(f); i++)
+    for (size_t j = 0; j < i && stands_for_pair(f, i); j++) {
+      double complex a = alpha_of(f, i);
+      double apart = cabs(a - alpha_of(f, j));
+      if (!stands_for_pair(f, j))
+        continue;
+      if (apart <= same(f, a)) {
+        ++*coincide;
+        *common = creal(a);
+      } else if (apart < m.apart) {
+        m = (meeting){apart, creal(a)};
+      }
+    }
+  return m;
+}
+
+/* The two that are nearest to each other. Those that a symmetry makes coincide do so all along the family: more than
+ * that are meeting. */
+static meeting nearest_two(ric_family *f) {
+  size_t coincide;
+  double common = NAN;
+  meeting m = nearest_different(f, &coincide, &common);
+  f->coincide = coincide < f->coincide ? coincide : f->coincide;
+  return coincide > f->coincide ? (meeting){0, common} : m;
+}
+
+/* Largest imaginary part. */
+static double across(const ric_family *f) {
+  double largest = 0;
   for (size_t i = 0; i < alpha_count(f); i++) {
     double complex a = alpha_of(f, i);
-    double same = coincidence * (1 + cabs(a) + f->multipliers.largest / 1000);
-    if (!stands_for_pair(f, i))
-      continue;
-    if (fabs(cimag(a)) > same)
-      *across = fmax(*across, fabs(cimag(a)));
-    for (size_t j = 0; j < i; j++) {
-      double apart = cabs(a - alpha_of(f, j));
-      if (stands_for_pair(f, j) && apart > same && apart < m.apart)
-        m = (meeting){apart, creal(a)};
-    }
+    if (stands_for_pair(f, i) && fabs(cimag(a)) > same(f, a))
+      largest = fmax(largest, fabs(cimag(a)));
   }
-  return m;
+  return largest;
 }
 
 /* Smallest distance of two different ones, squared, or minus the largest imaginary part, squared: the discriminant of
  * the two that meet, linear where they do. */
-static double collision(const ric_family *f) {
-  double across;
-  meeting m = nearest_two(f, &across);
-  return across > 0 ? -across * across : isfinite(m.apart) ? m.apart * m.apart : NAN;
+static double collision(ric_family *f) {
+  double largest = across(f);
+  meeting m = nearest_two(f);
+  return largest > 0 ? -largest * largest : isfinite(m.apart) ? m.apart * m.apart : NAN;
 }
 
 /* Of the two that meet, whether they leave the circle. */
-static bool meets_on_circle(const ric_family *f) {
-  double across;
-  return fabs(nearest_two(f, &across).place) < 1;
+static bool meets_on_circle(ric_family *f) {
+  return fabs(nearest_two(f).place) < 1;
 }
 
 /* Largest modulus of complex multipliers, minus 1. */

@@ -1,4 +1,6 @@
 /* The stiffness of a lattice along a step, as series. */
+#include <string.h>
+
 #include "hertz_series.h"
 #include "lattice_variation_parts.h"
 
@@ -9,6 +11,7 @@ bool lattice_variation_varies(const lattice_variation *v, const lattice_contacts
 void lattice_variation_begin(lattice_variation *v, double length) {
   v->length = length;
   v->count = 0;
+  memset(v->first_pull, 0, (v->n + 1) * sizeof *v->first_pull);
 }
 
 void lattice_variation_take(lattice_variation *v, const ric_segment *piece, double x) {
@@ -66,6 +69,26 @@ static void stiffen_press(const lattice_variation *v, const lattice_press *p, do
     k[j] *= 1.5 * p->stiffness;
 }
 
+/* Lists by particle what the springs do. Counted, then summed up, then filled from the last to the first. */
+static void list_pulls(lattice_variation *v) {
+  size_t *first = v->first_pull; /* zeros */
+  for (size_t k = 0; k < v->count; k++) {
+    if (v->varying[k].to != NO_PARTICLE)
+      first[v->varying[k].to]++;
+    if (v->varying[k].from != NO_PARTICLE)
+      first[v->varying[k].from]++;
+  }
+  for (size_t i = 1; i <= v->n; i++)
+    first[i] += first[i - 1];
+  for (size_t k = v->count; k-- > 0;) {
+    size_t to = v->varying[k].to, from = v->varying[k].from;
+    if (to != NO_PARTICLE)
+      v->pulls[--first[to]] = (spring_pull){k, -v->inverse_mass[to]};
+    if (from != NO_PARTICLE)
+      v->pulls[--first[from]] = (spring_pull){k, v->inverse_mass[from]};
+  }
+}
+
 void lattice_variation_stiffen(lattice_variation *v, const lattice_contacts *acting) {
   size_t levels = (size_t)v->order + 1;
   v->count = v->nonlinear + acting->pressed_count;
@@ -74,4 +97,5 @@ void lattice_variation_stiffen(lattice_variation *v, const lattice_contacts *act
     v->varying[v->nonlinear + i] = (varying_spring){.from = NO_PARTICLE, .to = acting->pressed[i].coordinate};
     stiffen_press(v, &acting->pressed[i], v->k + (v->nonlinear + i) * levels);
   }
+  list_pulls(v);
 }
