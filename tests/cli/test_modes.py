@@ -11,6 +11,10 @@ MODES = f"kind: branch\n{MODEL}orbit: {{mode: 0}}\n{ENERGY}"
 SWEPT = MODES + 'sweep:\n  - {parameter: orbit.mode, values: [0, 1]}\n  - {parameter: "model.cubic[1]", values: [0, 0.1, 0.2]}\n'
 PERIOD = (f"kind: branch\n{MODEL}orbit: {{period: 7, at_start: [1]}}\nbranch: {{parameter: orbit.energy, to: 6, low: 1}}\n"
           "sweep: {parameter: orbit.period, values: [7, 14.9, 15]}\n")
+TOUCH = (f"kind: branch\n{MODEL}orbit: {{mode: 0, at_start: [1]}}\n"
+         "branch: {parameter: orbit.energy, to: 200, low: 1, points: 3, step: 0.01, states: true}\n"
+         "sweep:\n  - {parameter: orbit.mode, values: [0, 1]}\n"
+         '  - {parameter: "model.cubic[1]", values: [0, 0.1, 0.2]}\n  - {parameter: orbit.swings, values: [1, 2, 3]}\n')
 RITZ = (f"kind: orbits\n{MODEL}orbit: {{period: 6.8, at_start: [1], method: ritz, verify: true, stable: true}}\n"
         'sweep:\n  - {parameter: "model.cubic[1]", values: [0, 0.1]}\n  - {parameter: orbit.functions, values: [8, 16, 32, 64]}\n')
 LOWEST = np.sqrt((5 - np.sqrt(13)) / 2)  # of the springs, without their cubic terms
@@ -47,6 +51,7 @@ def keys_of_a_type_of_model_are_refused_by_name(ricochet, folder):
         ("mode: 0", "mode: 0, period: 7", "s.yaml:3: orbit.period, but orbit.mode brings its own, expected one of them"),
         ("mode: 0", "mode: 0, at_start: [1]", "s.yaml:3: orbit.mode gives a first guess, and so do the impacts"),
         ("mode: 0", "period: 7, at_start: [0]", "s.yaml:3: orbit.at_start[0] = 0 has no floor or wall to hit"),
+        ("mode: 0", "mode: 0, swings: 2", "s.yaml:3: orbit.swings counts those of orbit.mode between impacts"),
         ("orbit.energy, from", "model.wall, from", "s.yaml:3: orbit.mode without an energy"),
         ("orbit.energy, from: 0.05", "orbit.energy", "s.yaml:4: missing key branch.from (a number)"),
         ("mode: 0}\nbranch: {parameter: orbit.energy, from: 0.05,",
@@ -59,6 +64,19 @@ def keys_of_a_type_of_model_are_refused_by_name(ricochet, folder):
     write(folder, "s.yaml", f"kind: trajectory\n{MODEL}orbit: {{period: 7, at_start: [1]}}\ntime: {{duration: 1}}\n")
     ricochet("check", "s.yaml", cwd=folder).expect_refused(
         USAGE, "s.yaml:2: model.type = duffing_chain, but a start on an orbit needs model.type = chain")
+
+
+@test
+def starts_at_touches_are_refused_by_what_they_lack(ricochet, folder):
+    for old, new, phrase in [
+        ("at_start: [1]", "at_half: [1]", "s.yaml:4: missing key branch.from (a number): at which energy the branch starts"),
+        ("low: 1", "low: 1, from: 2", "s.yaml:3: orbit.mode gives a first guess, and so do the impacts"),
+        ("wall: 2", "wall: 2, hertz: 100", "s.yaml:3: orbit.mode with orbit.at_start: the mode touches a rigid obstacle"),
+        ("mode: 0,", "mode: 0, swings: 0,", "s.yaml:3: orbit.swings = 0 is out of range"),
+    ]:
+        assert TOUCH.count(old) == 1, old
+        write(folder, "s.yaml", TOUCH.split("sweep:")[0].replace(old, new))
+        ricochet("check", "s.yaml", cwd=folder).expect_refused(USAGE, phrase)
 
 
 @test
@@ -175,6 +193,56 @@ def branches_in_the_energy_start_at_a_period(ricochet, folder):
     first = found["point_offset"][:-1]
     assert np.allclose(found["point_period"][first], [7, 14.9, 15], rtol=1e-10)
     assert np.allclose(found["point_parameter"][first], found["point_energy"][first], rtol=1e-9)
+
+
+@test
+def families_that_turn_back_before_all_nonlinear_terms_are_told(ricochet, folder):
+    """Newton's method from the motion of the linear part would fail there, or find a motion of another family."""
+    text = PERIOD.replace("cubic: [0, 0]", "cubic: [0, 0.1]")
+    found = read(run(ricochet, folder, text, "--set", "sweep.values=[5.9, 12, 27.6]"))
+    assert found["outcome"][:2] == ["failed_start"] * 2 and found["outcome"][2] == "bound"
+    for task, period, factor in ((0, "5.9", 0.138024), (1, "12", 0.0128931)):
+        reason = found["reason"][task].decode()
+        words = f"no motion of the period {period} goes on from that of the linear part: with growing nonlinear terms the family turns back at "
+        assert reason.startswith(words) and abs(float(reason[len(words):].split()[0]) / factor - 1) < 1e-3, reason
+    assert abs(found["point_period"][0] - 27.6) < 1e-9 and abs(found["point_energy"][0] - 2.15221) < 1e-5
+
+
+@test
+def orbits_say_where_their_family_turns_back(ricochet, folder):
+    text = RITZ.replace("ritz", "shooting").split("sweep:")[0] + "sweep: {parameter: orbit.period, values: [6]}\n"
+    with h5py.File(run(ricochet, folder, text, "--set", "model.cubic[1]=0.1")) as file:
+        assert words_of(file["orbits/outcome"]) == ["failed"]
+        assert file["orbits/reason"][0].decode().endswith("the family turns back at 0.0205 of them")
+
+
+@test
+def families_start_where_a_mode_touches_after_some_swings(ricochet, folder):
+    """There energy and period are those of the smooth mode; from there on the impact pushes."""
+    found = read(run(ricochet, folder, TOUCH))
+    first = found["point_offset"][:-1]
+    assert set(found["outcome"]) == {"points"}, found["reason"]
+    energy, period = (found[name][first].reshape(2, 3, 3) for name in ("point_energy", "point_period"))
+    assert np.allclose(energy, energy[:, :, :1], rtol=1e-9) and np.allclose(period / period[:, :, :1], [1, 2, 3], rtol=1e-9)
+    squares = (5 + np.sqrt(13) * np.array([-1, 1])) / 2  # of the frequencies; the modes are (1, 4 - square)
+    assert np.allclose(energy[:, 0, 0], squares / 2 * (2**2 + (2 / (4 - squares)) ** 2), rtol=1e-10), energy[:, 0, 0]
+    assert np.allclose(period[:, 0, 0], 2 * np.pi / np.sqrt(squares), rtol=1e-10)
+    smooth = read(run(ricochet, folder, SWEPT, "--set", "branch.to=60", "--set", "branch.step_most=0.5", name="smooth"))
+    for mode, cubic in ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2)):
+        at = first_special(smooth, "grazing", 3 * mode + cubic)
+        assert abs(energy[mode, cubic, 0] / smooth["special_energy"][at] - 1) < 1e-7
+        assert abs(period[mode, cubic, 0] / smooth["special_period"][at] - 1) < 1e-8
+    later = ~np.isin(found["impact_point"], [-1, *first])
+    assert later.sum() > 18 and (found["impact_impulse"][later] > 0).all()
+
+
+@test
+def modes_that_do_not_touch_are_told(ricochet, folder):
+    """In the second mode of three equal particles the one in the middle stands still."""
+    text = ("kind: branch\nmodel: {type: chain, particles: 3, ends: fixed, gamma: 1, floor: -1}\n"
+            "orbit: {mode: 1, at_start: [1]}\nbranch: {parameter: orbit.energy, to: 6}\n")
+    found = read(run(ricochet, folder, text))
+    assert found["outcome"] == ["failed_start"] and b"moves particle 1 by" in found["reason"][0], found["reason"]
 
 
 @test

@@ -95,8 +95,8 @@ static void assign_from(assignments *a, const study *s, const study_values *v, c
 /* Whether a number that varies in the result is of no use here: it belongs to the first guess there, in the place of
  * which the state and its impacts have come, or it is the energy of a motion whose period is to be followed. */
 static bool is_done_with(const study *s, const char *name) {
-  static const char *const guesses[] = {"start.",        "orbit.excited",  "orbit.mode", "orbit.at_start",
-                                        "orbit.at_half", "orbit.sequence", "orbit.times"};
+  static const char *const guesses[] = {"start.",         "orbit.excited", "orbit.mode",     "orbit.swings",
+                                        "orbit.at_start", "orbit.at_half", "orbit.sequence", "orbit.times"};
   for (size_t i = 0; i < sizeof guesses / sizeof *guesses; i++)
     if (strncmp(name, guesses[i], strlen(guesses[i])) == 0)
       return true;

@@ -151,13 +151,20 @@ static bool starts_at_period(const study *s) {
   return s->followed.key == KEY_ORBIT_ENERGY && !is_set(s, KEY_BRANCH_FROM);
 }
 
+/* Whether it does at that of a mode which touches the obstacle of the particle that is hit. */
+static bool starts_at_touch(const study *s) {
+  return branch_from_mode(s) && starts_at_period(s) && motion_is(s, "even") &&
+         s->values[KEY_ORBIT_AT_START].count == 1 && s->values[KEY_ORBIT_AT_HALF].count == 0 &&
+         s->values[KEY_ORBIT_SEQUENCE].count == 0;
+}
+
 static int check_from(const study *s, const document *d, message *why) {
   if (is_set(s, KEY_BRANCH_FROM))
     return 0;
   if (!starts_at_period(s))
     return document_refuse(d, s->values[KEY_BRANCH_PARAMETER].node, why,
                            "missing key branch.from (a number): %s has no value of its own", s->followed.name);
-  if (branch_from_mode(s))
+  if (branch_from_mode(s) && !starts_at_touch(s))
     return document_refuse(d, s->values[KEY_BRANCH_PARAMETER].node, why,
                            "missing key branch.from (a number): at which energy the branch starts, which orbit.mode "
                            "does not say");
@@ -403,6 +410,15 @@ static int check_mode(const study *s, const document *d, message *why) {
   return code;
 }
 
+static int check_swings(const study *s, const document *d, message *why) {
+  if (!s->values[KEY_ORBIT_SWINGS].node || starts_at_touch(s))
+    return 0;
+  return document_refuse(
+      d, s->values[KEY_ORBIT_SWINGS].node, why,
+      "orbit.swings counts those of orbit.mode between impacts: expected orbit.mode, one particle in "
+      "orbit.at_start, and a branch along orbit.energy without branch.from");
+}
+
 static int refuse_two_guesses(const study *s, const document *d, study_key key, bool start, message *why) {
   return document_refuse(d, check_node_of_key(s, key), why, "%s gives a first guess, and so %s, expected one of them",
                          schema_row(key)->path, start ? "does the section start" : "do the impacts");
@@ -424,6 +440,11 @@ static int check_guess(const study *s, const document *d, message *why) {
   if (mode && excited)
     return document_refuse(d, check_node_of_key(s, KEY_ORBIT_MODE), why,
                            "orbit.mode gives a first guess, and so does orbit.excited, expected one of them");
+  if (starts_at_touch(s) && !start)
+    return has_hertz(s) ? document_refuse(d, check_node_of_key(s, KEY_ORBIT_MODE), why,
+                                          "orbit.mode with orbit.at_start: the mode touches a rigid obstacle, "
+                                          "expected model.hertz = null")
+                        : 0;
   if ((excited || mode) && (start || listed))
     return refuse_two_guesses(s, d, mode ? KEY_ORBIT_MODE : KEY_ORBIT_EXCITED, start, why);
   if (!start && !excited && !mode && !listed && !forced)
@@ -434,9 +455,9 @@ static int check_guess(const study *s, const document *d, message *why) {
 }
 
 int branch_check(const study *s, const document *d, message *why) {
-  static int (*const checks[])(const study *, const document *,
-                               message *) = {check_from,  check_range,    check_steps,   check_model, check_given,
-                                             check_trace, check_sequence, check_excited, check_mode,  check_guess};
+  static int (*const checks[])(const study *, const document *, message *) = {
+      check_from,     check_range,   check_steps, check_model,  check_given, check_trace,
+      check_sequence, check_excited, check_mode,  check_swings, check_guess};
   int code = 0;
   for (size_t i = 0; i < sizeof checks / sizeof *checks && !code; i++)
     code = checks[i](s, d, why);

@@ -24,14 +24,16 @@ static const schema_entry rows[KEY_COUNT - KEY_BRANCH_PARAMETER] = {
                                                 .doc =
                                                     "Value of the parameter at which the branch starts; null: the "
                                                     "study's own value of it, of orbit.energy without one the energy "
-                                                    "of the motion of the period `orbit.period`."},
+                                                    "of the motion of the period `orbit.period`, or of that in which "
+                                                    "`orbit.mode` touches the obstacle of `orbit.at_start`."},
     [KEY_BRANCH_TO - KEY_BRANCH_PARAMETER] =
         {.path = "branch.to",
          NUMBER,
          .required = true,
          ANY,
          OF_BRANCH,
-         .doc = "The branch sets out towards this value. It ends where the parameter leaves its bounds."},
+         .doc = "The branch sets out towards this value; from where `orbit.mode` touches an obstacle, to the side on "
+                "which the impact pushes. It ends where the parameter leaves its bounds."},
     [KEY_BRANCH_LOW - KEY_BRANCH_PARAMETER] = {.path = "branch.low",
                                                NUMBER,
                                                .null = true,

@@ -291,7 +291,20 @@ static const schema_entry rows[KEY_BRANCH_PARAMETER] = {
                         .doc =
                             "First guess of a motion whose energy is given: the normal mode of this place, from 0 in "
                             "the order of frequencies, of the linear part of the model, at rest at t = 0, with its "
-                            "period and the amplitude of that energy; null: another guess."},
+                            "period and the amplitude of that energy; null: another guess. With one particle in "
+                            "`orbit.at_start` and a branch along the energy without `branch.from` the branch is the "
+                            "family that this particle hits once in `orbit.swings` swings of the mode, and starts "
+                            "where the mode touches the obstacle."},
+    [KEY_ORBIT_SWINGS] = {.path = "orbit.swings",
+                          .type = VALUE_INTEGER,
+                          .scalar = true,
+                          .fallback = "1",
+                          .low = 1,
+                          .high = 1000,
+                          .kinds = "branch",
+                          .sweep = true,
+                          .doc = "Periods of the mode `orbit.mode` from one impact of the particle in `orbit.at_start` "
+                                 "to the next."},
     [KEY_ORBIT_METHOD] =
         {.path = "orbit.method",
          WORD,

@@ -100,7 +100,7 @@ static ric_status begin(worker *w, ric_error *error) {
   if (w->family.family)
     return RIC_OK;
   RIC_TRY(branch_guess_settle(&w->guess, &w->family, &energy, error));
-  return branch_family_begin(&w->family, energy, error);
+  return branch_family_begin(&w->family, energy, w->guess.rise, error);
 }
 
 static ric_status follow(worker *w, const kind_plan *plan, records *tails, branch_result *result) {

@@ -178,7 +178,8 @@ static double step(const study_values *v, study_key key, double fallback) {
   return value > -INFINITY ? value : fallback;
 }
 
-static ric_family_options options_of(const branch_family *b) {
+/* @param rise  sign of the first step; 0: towards branch.to */
+static ric_family_options options_of(const branch_family *b, int rise) {
   const study_values *v = b->values;
   const double from = value_number(v, KEY_BRANCH_FROM, 0), to = value_number(v, KEY_BRANCH_TO, 0);
   const double way = fabs(branch_family_parameter(b, to) - branch_family_parameter(b, from));
@@ -187,7 +188,7 @@ static ric_family_options options_of(const branch_family *b) {
   o.curve.natural = value_flag(v, KEY_BRANCH_NATURAL);
   o.curve.p_low = bound(b, KEY_BRANCH_LOW, fmin(from, to));
   o.curve.p_high = bound(b, KEY_BRANCH_HIGH, fmax(from, to));
-  o.curve.direction = to > from ? 1 : -1;
+  o.curve.direction = rise ? rise : to > from ? 1 : -1;
   o.curve.points = (size_t)value_number(v, KEY_BRANCH_POINTS, 0);
   o.curve.newton_tol = value_number(v, KEY_BRANCH_TOLERANCE, 0);
   o.curve.poll = b->poll;
@@ -215,9 +216,9 @@ ric_curve_options branch_family_curve_options(const branch_family *b, int direct
   return o;
 }
 
-static ric_status make_family(branch_family *b, ric_error *error) {
+static ric_status make_family(branch_family *b, int rise, ric_error *error) {
   const ric_family_problem problem = describe(b);
-  const ric_family_options options = options_of(b);
+  const ric_family_options options = options_of(b, rise);
   return ric_family_create(&problem, &options, &b->family, error);
 }
 
@@ -227,7 +228,7 @@ ric_status branch_family_open(branch_family *b, ric_poll poll, ric_error *error)
   RIC_TRY(ric_system_create_lattice(&b->model.lattice, b->model.obstacles, b->model.obstacle_count, &b->system, error));
   RIC_TRY(read_impacts(b, error));
   if (value_number(b->values, KEY_BRANCH_FROM, 0) > -INFINITY)
-    return make_family(b, error);
+    return make_family(b, 0, error);
   const ric_shooting_problem motion = branch_family_motion(b, !is_compliant(b->values));
   return ric_shooting_create(b->system, &motion, &b->first, error);
 }
@@ -244,13 +245,13 @@ static ric_status check_energy(const branch_family *b, double energy, ric_error 
   return RIC_OK;
 }
 
-ric_status branch_family_begin(branch_family *b, double energy, ric_error *error) {
+ric_status branch_family_begin(branch_family *b, double energy, int rise, ric_error *error) {
   if (b->log && !(energy > 0))
     return ric_fail(error, RIC_EINVAL, "the branch would start at the energy %g, expected a number > 0 with scale: log",
                     energy);
   RIC_TRY(check_energy(b, energy, error));
   study_values_begin(b->values, energy);
-  return make_family(b, error);
+  return make_family(b, rise, error);
 }
 
 /* Matrices of the unknowns, of which every arc of a motion that is not even brings a state, tangent vectors, and

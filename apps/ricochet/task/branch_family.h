@@ -28,8 +28,9 @@ void branch_family_clear(branch_family *b);
  *  @returns as ric_family_create, RIC_EINVAL for impacts without an obstacle */
 ric_status branch_family_open(branch_family *b, ric_poll poll, ric_error *error);
 /** The family, at the energy of that motion.
+ *  @param rise  sign of the energy's change with which it sets out; 0: towards branch.to
  *  @returns as ric_family_create, RIC_EINVAL for one that has no logarithm or lies outside the bounds of the study */
-ric_status branch_family_begin(branch_family *b, double energy, ric_error *error);
+ric_status branch_family_begin(branch_family *b, double energy, int rise, ric_error *error);
 /** Destroys them. */
 void branch_family_close(branch_family *b);
 

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "even_start.h"
+#include "mode_touch.h"
 
 static const double pi = 3.14159265358979323846;
 
@@ -79,7 +80,7 @@ static ric_status take_mode(branch_guess *g, const branch_family *b, ric_error *
   return status;
 }
 
-/* --- motions of the linear part --- */
+/* --- motions with impacts at t = 0 and T/2 --- */
 
 /* Depth at which the work of Hertz's force, 2/5 k d^(5/2), has taken the kinetic energy v^2 / 2. */
 static double depth(double speed, double stiffness) {
@@ -111,8 +112,11 @@ static void take_unknowns(branch_guess *g, const branch_family *b, const ric_sho
 static ric_status take_orbit(branch_guess *g, const branch_family *b, ric_error *error) {
   ric_shooting_problem motion = branch_family_motion(b, true);
   even_start e;
+  const bool all = motion.count == 0;
   motion.count = 0; /* impacts in between have times of their own, which are no linear unknowns */
-  const ric_status status = even_start_begin(&e, &b->model, &motion, g->period, error);
+  ric_status status = even_start_begin(&e, &b->model, &motion, g->period, error);
+  if (status == RIC_OK && all)
+    status = even_start_continue(&e, error);
   if (status == RIC_OK) {
     take_unknowns(g, b, &motion, e.z);
     press(g, b, &motion);
@@ -121,11 +125,30 @@ static ric_status take_orbit(branch_guess *g, const branch_family *b, ric_error 
   return status;
 }
 
+/* A mode that touches the obstacle. */
+static ric_status take_touch(branch_guess *g, const branch_family *b, ric_error *error) {
+  const size_t n = particles_of(b->values);
+  const ric_shooting_problem motion = branch_family_motion(b, true);
+  mode_touch touch = {.mode = (size_t)value_number(b->values, KEY_ORBIT_MODE, 0),
+                      .swings = (size_t)value_number(b->values, KEY_ORBIT_SWINGS, 0),
+                      .z = calloc(n, sizeof *touch.z)};
+  const ric_status status = touch.z ? mode_touch_find(&touch, &b->model, &motion, error)
+                                    : ric_fail(error, RIC_ENOMEM, "no memory for a motion of %zu particles", n);
+  if (status == RIC_OK) {
+    take_unknowns(g, b, &motion, touch.z);
+    g->period = touch.period;
+    g->rise = touch.rise;
+  }
+  free(touch.z);
+  return status;
+}
+
 /* --- */
 
 ric_status branch_guess_find(branch_guess *g, const branch_family *b, bool from_state, ric_error *error) {
   const study_values *v = b->values;
   g->period = branch_family_period(v);
+  g->rise = 0;
   memset(g->q, 0, particles_of(v) * sizeof *g->q);
   memset(g->v, 0, particles_of(v) * sizeof *g->v);
   if (from_state)
@@ -133,7 +156,7 @@ ric_status branch_guess_find(branch_guess *g, const branch_family *b, bool from_
   else if (value_count(v, KEY_ORBIT_EXCITED) > 0)
     return excite(g, v, error);
   else if (value_number(v, KEY_ORBIT_MODE, 0) > -INFINITY)
-    return take_mode(g, b, error);
+    return value_count(v, KEY_ORBIT_AT_START) > 0 ? take_touch(g, b, error) : take_mode(g, b, error);
   else if (value_count(v, KEY_ORBIT_AT_START) + value_count(v, KEY_ORBIT_AT_HALF) > 0)
     return take_orbit(g, b, error);
   return RIC_OK;

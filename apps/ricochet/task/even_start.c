@@ -1,7 +1,12 @@
 #include "even_start.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* Most steps of the walk. Where the motion goes on they are a dozen, near other families a hundred; more are a motion
+ * that runs away, which costs and leads nowhere. */
+enum { MOST_STEPS = 300 };
 
 /* The parameter is the factor of the nonlinear terms. */
 static ric_status set_factor(ric_system *system, const double *p, double *given, void *user, ric_error *error) {
@@ -20,6 +25,7 @@ static ric_status make_family(even_start *e, const ric_shooting_problem *motion,
   options.curve.direction = 1;
   options.curve.step = 0.25;
   options.curve.step_most = 1;
+  options.curve.points = MOST_STEPS;
   options.curve.poll = motion->poll;
   return ric_family_create(&problem, &options, &e->family, error);
 }
@@ -38,7 +44,7 @@ static ric_status solve_linear(even_start *e, double period, ric_error *error) {
 ric_status even_start_begin(even_start *e, const lattice_model *model, const ric_shooting_problem *motion,
                             double period, ric_error *error) {
   const size_t n = model->lattice.particles;
-  *e = (even_start){.model = model, .z = calloc(n, sizeof *e->z)};
+  *e = (even_start){.model = model, .period = period, .z = calloc(n, sizeof *e->z)};
   if (!e->z)
     return ric_fail(error, RIC_ENOMEM, "no memory for a motion of %zu particles", n);
   RIC_TRY(lattice_model_scaled(model, 0, &e->system, error));
@@ -46,18 +52,33 @@ ric_status even_start_begin(even_start *e, const lattice_model *model, const ric
   return solve_linear(e, period, error);
 }
 
+/* At a fold the walk is over: beyond it energies grow without bound as the factor goes back to zero. */
 static int keep_last(const ric_family_point *point, void *user) {
   even_start *e = user;
   memcpy(e->z, point->z, point->unknowns * sizeof *e->z);
-  return 0;
+  e->factor = point->parameter;
+  return point->kind == RIC_FAMILY_FOLD;
+}
+
+/* Why the walk did not come to all nonlinear terms. */
+static ric_status tell_end(const even_start *e, const ric_curve_run *run, ric_error *error) {
+  static const char *const what = "no motion of the period %.6g goes on from that of the linear part: with growing "
+                                  "nonlinear terms ";
+  char begin[RIC_REASON_BYTES];
+  snprintf(begin, sizeof begin, what, e->period);
+  if (run->end == RIC_CURVE_ENDED)
+    return ric_fail(error, RIC_ENUMERIC, "%sthe family turns back at %.4g of them", begin, e->factor);
+  return ric_fail(error, RIC_ENUMERIC, "%sit comes to %.4g of them%s%.80s", begin, e->factor,
+                  run->reason[0] ? ": " : "", run->reason);
 }
 
 ric_status even_start_continue(even_start *e, ric_error *error) {
   ric_curve_run run = {0};
+  if (lattice_model_is_linear(e->model))
+    return RIC_OK;
   RIC_TRY(ric_family_follow(e->family, e->z, 0, NULL, keep_last, e, &run, error));
-  if (run.end != RIC_CURVE_BOUND)
-    return ric_fail(error, RIC_ENUMERIC,
-                    "the orbit of the linear part does not continue to all nonlinear terms: %.120s", run.reason);
+  if (run.end != RIC_CURVE_BOUND || e->factor != 1)
+    return tell_end(e, &run, error);
   return lattice_model_rescale(e->model, 1, e->system, error);
 }
 

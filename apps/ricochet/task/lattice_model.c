@@ -167,6 +167,17 @@ ric_status lattice_model_rescale(const lattice_model *m, double factor, ric_syst
   return status;
 }
 
+static bool is_linear(const ric_spring *spring) {
+  return spring->quadratic == 0 && spring->cubic == 0;
+}
+
+bool lattice_model_is_linear(const lattice_model *m) {
+  for (size_t i = 0; m->springs && i <= m->lattice.particles; i++)
+    if (!is_linear(&m->springs[i]))
+      return false;
+  return is_linear(&m->lattice.on_site) && is_linear(&m->lattice.link);
+}
+
 size_t lattice_model_obstacle(const lattice_model *m, size_t particle, int side) {
   for (size_t j = 0; j < m->obstacle_count; j++)
     if (m->obstacles[j].coordinate == particle && m->obstacles[j].side == side)

@@ -2,6 +2,8 @@
 #ifndef RICOCHET_APP_LATTICE_MODEL_H
 #define RICOCHET_APP_LATTICE_MODEL_H
 
+#include <stdbool.h>
+
 #include <ricochet/ricochet.h>
 
 #include "../study/study.h"
@@ -32,6 +34,9 @@ void lattice_model_read(lattice_model *m, const study_values *v);
 ric_status lattice_model_scaled(const lattice_model *m, double factor, ric_system **system, ric_error *error);
 /** Puts such a lattice into a system made by it. @returns as ric_system_set_lattice */
 ric_status lattice_model_rescale(const lattice_model *m, double factor, ric_system *system, ric_error *error);
+
+/** Whether no spring has nonlinear terms. */
+bool lattice_model_is_linear(const lattice_model *m);
 
 /** Index of the obstacle of a particle, side +1 floor, -1 wall; SIZE_MAX when it has none. */
 size_t lattice_model_obstacle(const lattice_model *m, size_t particle, int side);
