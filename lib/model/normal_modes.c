@@ -22,6 +22,7 @@ typedef struct problem {
   bool diagonal;  /* the mass */
   double *factor; /* L [n][n], or the roots of the masses [n] */
   double *a, *y;  /* [n][n] A; eigenvectors, one a column */
+  int half_power; /* A is over 4^half_power */
   double *values; /* [n] */
   gsl_eigen_symmv_workspace *work;
 } problem;
@@ -89,6 +90,16 @@ static ric_status reduce(problem *p, ric_error *error) {
   return RIC_OK;
 }
 
+/* Brings the largest entry to about 1, by a power of two whose root is one, too: the eigenvalue problem squares
+ * numbers, and does not end where they underflow. */
+static void scale(problem *p) {
+  int power;
+  frexp(largest(p->a, p->n * p->n), &power);
+  p->half_power = power / 2;
+  for (size_t e = 0; e < p->n * p->n; e++)
+    p->a[e] = ldexp(p->a[e], -2 * p->half_power);
+}
+
 static ric_status decompose(problem *p, ric_error *error) {
   gsl_matrix_view a = gsl_matrix_view_array(p->a, p->n, p->n), y = gsl_matrix_view_array(p->y, p->n, p->n);
   gsl_vector_view values = gsl_vector_view_array(p->values, p->n);
@@ -100,7 +111,7 @@ static ric_status decompose(problem *p, ric_error *error) {
   double rounding = 8 * DBL_EPSILON * (double)p->n * largest(p->values, p->n);
   if (!(p->values[0] >= -rounding))
     return ric_fail(error, RIC_ENUMERIC, "w^2 = %g of the slowest mode, expected >= 0: the stiffness is not definite",
-                    p->values[0]);
+                    ldexp(p->values[0], 2 * p->half_power));
   for (size_t j = 0; j < p->n && p->values[j] <= rounding; j++)
     p->values[j] = 0;
   return RIC_OK;
@@ -110,6 +121,7 @@ static ric_status solve(problem *p, const ric_system *system, ric_error *error) 
   RIC_TRY(factorise(p, system, error));
   RIC_TRY(linear_part_stiffness(system, p->a, error));
   RIC_TRY(reduce(p, error));
+  scale(p);
   return decompose(p, error);
 }
 
@@ -137,7 +149,7 @@ ric_status ric_normal_modes(const ric_system *system, double *frequency, double 
   if (status == RIC_OK)
     status = solve(&p, system, error);
   for (size_t j = 0; status == RIC_OK && j < p.n; j++) {
-    frequency[j] = sqrt(p.values[j]);
+    frequency[j] = ldexp(sqrt(p.values[j]), p.half_power);
     set_shape(&p, j, shape + j * p.n);
   }
   problem_clear(&p);

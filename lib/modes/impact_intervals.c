@@ -17,7 +17,8 @@ enum { DEFAULT_SAMPLES = 64, MOST_SAMPLES = 1000000, MOST_ITERATIONS = 200, DIP_
 
 /* Resonances nearer to each other than this, relatively, are one; pieces shorter are none. */
 static const double merge_tol = 1e-12;
-/* The first and the last sample of a piece lie this part of its length from its ends. */
+/* The first and the last sample of a piece lie this part of its length from its ends, and not nearer than merge_tol:
+ * within that there may be another resonance or blow-up. */
 static const double end_part = 1e-9;
 
 static const double pi = 3.14159265358979323846;
@@ -166,12 +167,14 @@ static int by_period(const void *a, const void *b) {
 
 /* Samples that bracket all changes of sign, as far as the first ones show them. */
 static void take_samples(search *s, double low, double high) {
-  double length = high - low;
+  double nearest = fmax(end_part * (high - low), fmin(merge_tol * high, (high - low) / 4));
   s->count = 0;
-  add_sample(s, low + end_part * length);
+  low += nearest;
+  high -= nearest;
+  add_sample(s, low);
   for (size_t i = 0; i < s->samples; i++) /* denser at the ends, where amplitudes or impulses change fast */
-    add_sample(s, low + length * (1 - cos(pi * ((double)i + 0.5) / (double)s->samples)) / 2);
-  add_sample(s, high - end_part * length);
+    add_sample(s, low + (high - low) * (1 - cos(pi * ((double)i + 0.5) / (double)s->samples)) / 2);
+  add_sample(s, high);
   for (size_t i = 1, count = s->count; i + 1 < count; i++) {
     const sample *x = &s->list[i];
     double sign = copysign(1, x->margin), own = sign * x->margin;

@@ -1,5 +1,6 @@
 #include "ricochet/impact_modes.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -11,12 +12,27 @@
 #include "ricochet/normal_modes.h"
 
 /* Squares of frequencies nearer than this to each other, relative to the largest, are those of one space of modes: ten
- * times and more what rounding makes of equal ones. */
-static const double same_tol = 1e-12;
+ * times and more what rounding makes of equal ones, also with a mass matrix. Slow modes of stiff systems would be
+ * far apart then: they must be nearer than slow_tol relative to themselves, or than rounding. */
+static const double same_tol = 1e-12, slow_tol = 1e-9;
 /* Shares of M^-1_kk (their roots) below it are rounding of modes that do not move k. */
 static const double hidden_tol = 1e-11;
 
 static const double pi = 3.14159265358979323846;
+
+/* An obstacle in the same place is touched by every orbit: rounding would decide whether it is passed. */
+static ric_status check_others(const ric_system *system, size_t obstacle, ric_error *error) {
+  const ric_obstacle *hit = &system->obstacles[obstacle];
+  for (size_t j = 0; j < system->obstacle_count; j++) {
+    const ric_obstacle *o = &system->obstacles[j];
+    if (j != obstacle && o->coordinate == hit->coordinate && o->side == hit->side && o->position == hit->position)
+      return ric_fail(
+          error, RIC_EINVAL,
+          "obstacle %zu: position = %g, coordinate and side are those of obstacle %zu, expected another place", j,
+          o->position, obstacle);
+  }
+  return RIC_OK;
+}
 
 static ric_status check_obstacle(const ric_system *system, size_t obstacle, ric_error *error) {
   if (obstacle >= system->obstacle_count)
@@ -28,7 +44,7 @@ static ric_status check_obstacle(const ric_system *system, size_t obstacle, ric_
     return ric_fail(error, RIC_EINVAL, "obstacle %zu: restitution = %g, expected 1", obstacle, o->restitution);
   if (o->position == 0)
     return ric_fail(error, RIC_EINVAL, "obstacle %zu: position = 0, expected it away from the state of rest", obstacle);
-  return RIC_OK;
+  return check_others(system, obstacle, error);
 }
 
 static double *take(double **store, size_t count) {
@@ -61,12 +77,17 @@ static ric_status allocate(ric_impact_modes *m, ric_error *error) {
   return RIC_OK;
 }
 
+static bool are_one(const ric_impact_modes *m, double slower, double faster) {
+  double below = slower / m->fastest, above = faster / m->fastest; /* whose squares do not underflow */
+  double rounding = 8 * DBL_EPSILON * (double)m->n;                /* as in normal_modes.c */
+  return above * above - below * below <= fmax(rounding, fmin(same_tol, slow_tol * above * above));
+}
+
 /* Number of modes from `first` on that belong to one frequency. */
 static size_t multiplicity(const ric_impact_modes *m, size_t first) {
   size_t count = 1;
   const double *w = m->frequency + first;
-  while (first + count < m->n &&
-         w[count] * w[count] - w[count - 1] * w[count - 1] <= same_tol * m->fastest * m->fastest)
+  while (first + count < m->n && are_one(m, w[count - 1], w[count]))
     count++;
   return count;
 }

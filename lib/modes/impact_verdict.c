@@ -65,8 +65,13 @@ static void judge_special(const ric_impact_modes *m, const periodic_response *r,
 
 static void judge(ric_impact_modes *m, const periodic_response *r, impact_verdict *v) {
   double zero = m->options.grazing_tol * v->scale, rate = response_gap_rate(m, r);
+  double left = fabs(m->q[m->hit] - m->obstacles[m->obstacle].position);
   v->reason[0] = '\0';
-  if (r->carried || r->free) {
+  if (!(left <= m->options.residual_tol * v->scale)) {
+    v->outcome = RIC_FAILED; /* impulses of the shortest periods underflow */
+    snprintf(v->reason, sizeof v->reason, "the impulse %.2g keeps coordinate %zu away from obstacle %zu, by %.2g",
+             r->impulse, m->hit, m->obstacle, left);
+  } else if (r->carried || r->free) {
     judge_special(m, r, zero, v);
   } else if (smaller(v)->value < -zero || rate < -zero * m->fastest) {
     v->outcome = RIC_INADMISSIBLE;

@@ -140,20 +140,27 @@ static ric_status fit_coordinate(fit *f, size_t coordinate, double w, double *c,
   return RIC_OK;
 }
 
+/* |F| with the equations of motion over (2 pi / T)^2, displacements like the last one: no w is the best for a unit of
+ * time alone. */
+static double size_of_residual(const double *F, size_t last, double period) {
+  double size = fabs(F[last]), rate = turn / period;
+  for (size_t i = 0; i < last; i++)
+    size = hypot(size, F[i] / rate / rate);
+  return size;
+}
+
 /* Refits the coordinate that is hit with every w. @param c  the others fitted; set for the best */
 static ric_status try_frequencies(fit *f, double *c, ric_error *error) {
   ric_ritz *r = f->r;
   size_t last = ric_ritz_unknowns(r) - 1;
   double best = 0, least = INFINITY, *F = r->spare;
   for (size_t k = 0; k < TRIED; k++) {
-    double square = 0;
     c[last] = turn / f->period * (0.5 + 0.5 * ((double)k + 0.5) / TRIED);
     RIC_TRY(fit_coordinate(f, r->hit, c[last], c, error));
     RIC_TRY(ric_ritz_residual(r, c, f->period, F, NULL, NULL, error));
-    for (size_t i = 0; i <= last; i++)
-      square += F[i] * F[i];
-    if (square < least) {
-      least = square;
+    double size = size_of_residual(F, last, f->period);
+    if (size < least) {
+      least = size;
       best = c[last];
     }
   }

@@ -3,30 +3,78 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "model/largest.h"
 #include "orbit/newton.h"
 #include "ritz_parts.h"
 
 static const double turn = 6.28318530717958648;
 
-/* Of the largest residual, relative to 1 + the largest coefficient: rounding of sums over the points. */
+/* Of the largest residual, relative to 1 + the largest unknown, without units: rounding of sums over the points. */
 static const double newton_tol = 1e-13;
 
+/* Newton's method sees no units of length and time, so that its tolerance means the same in all: coefficients are
+ * over the size of the motion, w is over 2 pi / T, residuals of the equations of motion are over both. */
 typedef struct at_period {
   ric_ritz *r;
   double period;
+  double length, rate; /* the units: the size of the motion, 2 pi / T */
 } at_period;
 
-static ric_status residual(const double *c, double *F, double *J, void *user, ric_error *error) {
+static at_period units_of(ric_ritz *r, const double *c, double period) {
+  size_t last = ric_ritz_unknowns(r) - 1;
+  double size = fmax(largest(c, last), fabs(r->system->obstacles[r->obstacle].position));
+  return (at_period){.r = r, .period = period, .length = size > 0 ? size : 1, .rate = turn / period};
+}
+
+static void take_units_off(const at_period *a, const double *c, double *z) {
+  size_t last = ric_ritz_unknowns(a->r) - 1;
+  for (size_t i = 0; i < last; i++)
+    z[i] = c[i] / a->length;
+  z[last] = c[last] / a->rate;
+}
+
+static void put_units_on(const at_period *a, const double *z, double *c) {
+  size_t last = ric_ritz_unknowns(a->r) - 1;
+  for (size_t i = 0; i < last; i++)
+    c[i] = z[i] * a->length;
+  c[last] = z[last] * a->rate;
+}
+
+/* Of the Jacobian: what row i is over, and column j is times. */
+static void scale_slopes(const at_period *a, double *J) {
+  size_t unknowns = ric_ritz_unknowns(a->r), last = unknowns - 1;
+  for (size_t i = 0; i < unknowns; i++) {
+    double *row = J + i * unknowns;
+    for (size_t j = 0; j < unknowns && i < last; j++)
+      row[j] = row[j] / a->rate / a->rate;
+    row[last] = row[last] / a->length * a->rate;
+  }
+}
+
+static ric_status residual(const double *z, double *F, double *J, void *user, ric_error *error) {
   const at_period *a = user;
-  return ric_ritz_residual(a->r, c, a->period, F, J, NULL, error);
+  size_t last = ric_ritz_unknowns(a->r) - 1;
+  put_units_on(a, z, a->r->spare);
+  RIC_TRY(ric_ritz_residual(a->r, a->r->spare, a->period, F, J, NULL, error));
+  for (size_t i = 0; i <= last; i++)
+    F[i] = i < last ? F[i] / a->length / a->rate / a->rate : F[i] / a->length;
+  if (J)
+    scale_slopes(a, J);
+  return RIC_OK;
 }
 
 ric_status ric_ritz_solve(ric_ritz *r, double *c, double period, int *iterations, ric_error *error) {
-  at_period at = {.r = r, .period = period};
+  int count = 0;
+  if (iterations)
+    *iterations = 0;
+  RIC_TRY(ritz_check_system(r, error));
+  RIC_TRY(ritz_check_numbers(r, c, period, error));
+  at_period at = units_of(r, c, period);
   const newton_problem problem = {
       .name = "Ritz's method", .unknowns = ric_ritz_unknowns(r), .residual = residual, .user = &at};
-  int count = 0;
+  take_units_off(&at, c, c);
   ric_status status = newton_solve(&problem, c, newton_tol, &count, error);
+  put_units_on(&at, c, c);
   double w = ritz_frequency(r, c);
   if (iterations)
     *iterations = count;

@@ -58,5 +58,5 @@ double ric_ritz_defect(ric_ritz *r, const double *c, double period) {
     for (size_t i = 0; i < n; i++)
       left = fmax(left, fabs(r->bend[i] - r->rate[i]));
   }
-  return left / most;
+  return left > 0 ? left / most : 0; /* rest is exact */
 }

@@ -163,6 +163,17 @@ def orbits_that_do_not_exist_are_rows(ricochet, folder):
 
 
 @test
+def orbits_that_end_before_all_nonlinear_terms_say_where(ricochet, folder):
+    """A spring that softens: the family turns back at a cubic coefficient, wherever it should have gone."""
+    text = RITZ.replace("ritz", "shooting").split("sweep:")[0] + 'sweep: {parameter: "model.cubic[1]", values: [-0.05, -0.1, -10]}\n'
+    with h5py.File(run(ricochet, folder, text)) as file:
+        assert words_of(file["orbits/outcome"]) == ["admissible", "failed", "failed"]
+        reasons = [reason.decode() for reason in file["orbits/reason"][1:]]
+    for reason, part in zip(reasons, ("0.576", "0.00576")):
+        assert f"with growing nonlinear terms the family turns back at {part}" in reason, reason
+
+
+@test
 def the_first_mode_touches_the_wall_where_its_closed_form_says(ricochet, folder):
     found = read(run(ricochet, folder, SWEPT))
     assert set(found["outcome"]) == {"bound"}

@@ -77,6 +77,26 @@ static void first_admissible_family_ends_at_the_first_mode(void **state) {
   impact_study_clear(&s);
 }
 
+/* Frequencies 1 and 2 (1 + 3e-12): the blow-up between both resonances is one with the first of them, and no interval
+ * of a few roundings is put in its place. */
+static void resonances_nearly_together_leave_no_splinters(void **state) {
+  (void)state;
+  const double unit[] = {1, 0, 0, 1}, fast = 4 * (1 + 6e-12), pull = (1 - fast) / 2;
+  const double stiffness[] = {(1 + fast) / 2, pull, pull, (1 + fast) / 2};
+  const ric_mck mck = {.coordinates = 2, .mass.values = unit, .stiffness.values = stiffness};
+  const ric_obstacle wall = ric_obstacle_wall(0, 1.5);
+  ric_system *system;
+  assert_int_equal(ric_system_create_mck(&mck, &wall, 1, &system, NULL), RIC_OK);
+  impact_study s = impact_study_of(system, &wall);
+  const found *f = intervals_of(&s, 6, 6.6, 0);
+  assert_int_equal(f->count, 4);
+  for (size_t k = 0; k < f->count; k++)
+    assert_true(f->list[k].high - f->list[k].low > 1e-12 * f->list[k].high);
+  check_end(&f->list[1], RIC_INTERVAL_RESONANCE, RIC_INTERVAL_GRAZING, RIC_INADMISSIBLE);
+  check_end(&f->list[2], RIC_INTERVAL_GRAZING, RIC_INTERVAL_RESONANCE, RIC_ADMISSIBLE);
+  impact_study_clear(&s);
+}
+
 /* --- any system --------------------------------------------------------------------------------------------------- */
 
 static void for_random_ranges(uint64_t seed, int trials, void (*holds)(impact_study *, const found *)) {
@@ -256,6 +276,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(gap_below_the_resonance_ends_at_a_touch_with_the_blow_up_inside),
       cmocka_unit_test(first_admissible_family_ends_at_the_first_mode),
+      cmocka_unit_test(resonances_nearly_together_leave_no_splinters),
       cmocka_unit_test(intervals_cover_the_range_in_order),
       cmocka_unit_test(resonances_and_blow_ups_alternate_and_none_is_missing),
       cmocka_unit_test(every_verdict_of_a_scan_agrees_with_the_intervals),

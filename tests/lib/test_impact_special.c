@@ -119,6 +119,44 @@ static void modes_of_one_frequency_are_chosen_so_that_one_moves_the_coordinate(v
   ric_system_destroy(&system);
 }
 
+/* Two masses on a stiff link are one of twice the mass, but for 3e-13, before one of 1 on springs 1.3 and 0.7. */
+static void slow_modes_of_stiff_systems_keep_their_own_frequencies(void **state) {
+  (void)state;
+  const double masses[] = {1, 1, 1}, rigid[] = {2, 1};
+  const ric_spring links[] = {{.linear = 1}, {.linear = 3e12}, {.linear = 1.3}, {.linear = 0.7}};
+  const ric_spring others[] = {{.linear = 1}, {.linear = 1.3}, {.linear = 0.7}};
+  const ric_obstacle walls[] = {ric_obstacle_wall(2, 1), ric_obstacle_wall(1, 1)};
+  ric_lattice lattice = ric_lattice_default(3, RIC_ENDS_FIXED), two = ric_lattice_default(2, RIC_ENDS_FIXED);
+  ric_system *systems[2];
+  ric_impact_modes *modes[2];
+  lattice.on_site = two.on_site = (ric_spring){0};
+  lattice.masses = masses;
+  lattice.links = links;
+  two.masses = rigid;
+  two.links = others;
+  assert_int_equal(ric_system_create_lattice(&lattice, &walls[0], 1, &systems[0], NULL), RIC_OK);
+  assert_int_equal(ric_system_create_lattice(&two, &walls[1], 1, &systems[1], NULL), RIC_OK);
+  for (int k = 0; k < 2; k++)
+    assert_int_equal(ric_impact_modes_create(systems[k], 0, &modes[k], NULL), RIC_OK);
+  const double *w = ric_impact_modes_frequencies(modes[0]), *expected = ric_impact_modes_frequencies(modes[1]);
+  for (size_t j = 0; j < 2; j++) /* w^2 are 0.56 and 2.59; their rounding is 2e-16 of 6e12 */
+    assert_close(w[j] * w[j], expected[j] * expected[j], 1e-2);
+  for (int k = 0; k < 2; k++) {
+    ric_impact_modes_destroy(&modes[k]);
+    ric_system_destroy(&systems[k]);
+  }
+}
+
+/* Impulses of periods that are hardly numbers are zero. */
+static void orbits_that_do_not_reach_the_obstacle_are_failed(void **state) {
+  (void)state;
+  impact_study s = impact_study_two_masses();
+  impact_study_solve(&s, 1e-320);
+  assert_int_equal(s.orbit.outcome, RIC_FAILED);
+  assert_non_null(strstr(s.orbit.reason, "keeps coordinate 1 away from obstacle 0, by 2"));
+  impact_study_clear(&s);
+}
+
 /* Frequencies 1 and 2: at T = 2 pi both are at resonance, and the family tends to one combination of them. */
 static void modes_at_resonance_together_share_the_limit(void **state) {
   (void)state;
@@ -216,6 +254,24 @@ static void obstacles_that_are_not_hit_elastically_are_named(void **state) {
   check_refused(pair(site, none, wall), 0, RIC_EINVAL, "stiffness = 100, expected a rigid one");
 }
 
+/* It would be touched whenever the other one is hit. */
+static void obstacles_where_the_one_that_is_hit_stands_are_named(void **state) {
+  (void)state;
+  const ric_lattice lattice = ric_lattice_default(2, RIC_ENDS_FREE);
+  const ric_obstacle floor = ric_obstacle_floor(1, -1), away = ric_obstacle_floor(0, -1);
+  const ric_obstacle twice[] = {floor, away, floor}, opposite[] = {floor, away, ric_obstacle_wall(1, -1)};
+  ric_system *system;
+  ric_impact_modes *modes;
+  for (size_t hit = 0; hit <= 2; hit += 2) {
+    assert_int_equal(ric_system_create_lattice(&lattice, twice, 3, &system, NULL), RIC_OK);
+    check_refused(system, hit, RIC_EINVAL, hit == 0 ? "obstacle 2: position = -1" : "obstacle 0: position = -1");
+  }
+  assert_int_equal(ric_system_create_lattice(&lattice, opposite, 3, &system, NULL), RIC_OK);
+  assert_int_equal(ric_impact_modes_create(system, 0, &modes, NULL), RIC_OK);
+  ric_impact_modes_destroy(&modes);
+  ric_system_destroy(&system);
+}
+
 static void user_systems_are_refused(void **state) {
   (void)state;
   const ric_mechanical pendulum = {
@@ -262,10 +318,13 @@ int main(void) {
       cmocka_unit_test(mode_that_does_not_move_the_coordinate_has_a_free_amplitude),
       cmocka_unit_test(mode_that_does_not_move_the_coordinate_ends_no_interval),
       cmocka_unit_test(modes_of_one_frequency_are_chosen_so_that_one_moves_the_coordinate),
+      cmocka_unit_test(slow_modes_of_stiff_systems_keep_their_own_frequencies),
+      cmocka_unit_test(orbits_that_do_not_reach_the_obstacle_are_failed),
       cmocka_unit_test(modes_at_resonance_together_share_the_limit),
       cmocka_unit_test(systems_that_are_not_linear_and_conservative_are_named),
       cmocka_unit_test(forcing_and_matrices_that_damp_are_named),
       cmocka_unit_test(obstacles_that_are_not_hit_elastically_are_named),
+      cmocka_unit_test(obstacles_where_the_one_that_is_hit_stands_are_named),
       cmocka_unit_test(user_systems_are_refused),
       cmocka_unit_test(requests_out_of_range_are_refused_by_name),
   };

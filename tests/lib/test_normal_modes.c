@@ -105,6 +105,26 @@ static void uniform_chains_have_their_dispersion_relation(void **state) {
     }
 }
 
+/* Up to where the sum of two of them overflows, down to where they lose digits. */
+static void stiffnesses_of_any_size_scale_frequencies(void **state) {
+  (void)state;
+  static const double sizes[] = {1e-322, 1e-308, 1e-160, 1e160, 1e300, 4e307};
+  for (size_t n = 3; n <= 20; n += 17)
+    for (size_t s = 0; s < sizeof sizes / sizeof *sizes; s++) {
+      ric_lattice lattice = ric_lattice_default(n, RIC_ENDS_FIXED);
+      ric_system *system;
+      lattice.on_site = (ric_spring){0};
+      lattice.link.linear = sizes[s];
+      assert_int_equal(ric_system_create_lattice(&lattice, NULL, 0, &system, NULL), RIC_OK);
+      find(system);
+      for (size_t j = 0; j < n; j++) {
+        double angle = 1.5707963267948966 * (double)(j + 1) / (double)(n + 1);
+        assert_close(frequency[j] / sqrt(sizes[s]), 2 * sin(angle), 1e-13);
+      }
+      ric_system_destroy(&system);
+    }
+}
+
 /* Modes of a chain with fixed ends are simple: sines, whichever sign they have. */
 static void shapes_of_a_fixed_chain_are_sines_with_a_positive_largest_component(void **state) {
   (void)state;
@@ -195,6 +215,7 @@ int main(void) {
       cmocka_unit_test(modes_solve_their_equation),
       cmocka_unit_test(modes_are_orthonormal_in_the_mass),
       cmocka_unit_test(uniform_chains_have_their_dispersion_relation),
+      cmocka_unit_test(stiffnesses_of_any_size_scale_frequencies),
       cmocka_unit_test(shapes_of_a_fixed_chain_are_sines_with_a_positive_largest_component),
       cmocka_unit_test(damping_forcing_and_nonlinear_terms_are_left_aside),
       cmocka_unit_test(free_body_has_a_mode_of_frequency_zero),

@@ -2,6 +2,7 @@
 #include "support.h"
 
 #include "approximated.h"
+#include "recorded.h"
 
 static const double turn = 6.283185307179586;
 
@@ -250,6 +251,58 @@ static void chains_are_mirrored_with_their_quadratic_springs(void **state) {
   shot_clear(&floor);
 }
 
+/* --- units ------------------------------------------------------------------------------------------------------- */
+
+/* A motion of duffing_masses(0.1, -1) with lengths and rates in other units. */
+static shot in_units(const shot *s, double length, double rate) {
+  static const size_t zero = 0;
+  const double stiff = rate * rate;
+  const ric_spring links[3] = {{.linear = 3 * stiff}, {.linear = stiff, .cubic = 0.1 * stiff / length / length}};
+  const ric_obstacle wall = ric_obstacle_wall(1, 2 * length);
+  const ric_shooting_problem problem = {
+      .kind = RIC_MOTION_EVEN, .at_start = &zero, .start_count = 1, .flow = ric_flow_options_default()};
+  ric_lattice lattice = ric_lattice_default(2, RIC_ENDS_FIXED);
+  lattice.on_site = (ric_spring){0};
+  lattice.links = links;
+  shot other = shot_at(lattice_system(&lattice, &wall, 1), &problem);
+  other.given = s->given / rate;
+  other.z[0] = s->z[0] * length;
+  other.z[1] = s->z[1] * length * rate;
+  return other;
+}
+
+static void units_of_length_and_time_change_nothing(void **state) {
+  (void)state;
+  static const double lengths[] = {1, 1e-9, 1e-100, 1e9, 1, 1, 1e-12}, rates[] = {1, 1, 1, 1, 1e-6, 1e6, 1e-9};
+  shot s = duffing_mode(0.1, 0.4, -1);
+  approximated a = approximate(&s, 16, true);
+  size_t last = ric_ritz_unknowns(a.ritz) - 1;
+  for (size_t k = 0; k < sizeof lengths / sizeof *lengths; k++) {
+    shot other = in_units(&s, lengths[k], rates[k]);
+    approximated b = approximate(&other, 16, true);
+    for (size_t i = 0; i < last; i++)
+      assert_close(b.c[i] / lengths[k], a.c[i], 1e-11);
+    assert_close(b.c[last] / rates[k], a.c[last], 1e-10);
+    assert_close(b.error_q / lengths[k] / a.error_q, 1, 1e-6);
+    approximated_clear(&b);
+    shot_clear(&other);
+  }
+  approximated_clear(&a);
+  shot_clear(&s);
+}
+
+static void rest_has_no_defect(void **state) {
+  (void)state;
+  const ric_ritz_options options = {.functions = 2, .constants = true};
+  ric_system *system = duffing_masses(0.1, -1);
+  ric_ritz *ritz = NULL;
+  const double c[7] = {[6] = 0.8};
+  assert_int_equal(ric_ritz_create(system, 0, &options, &ritz, NULL), RIC_OK);
+  assert_close(ric_ritz_defect(ritz, c, 7), 0, 0);
+  ric_ritz_destroy(&ritz);
+  ric_system_destroy(&system);
+}
+
 /* --- families ----------------------------------------------------------------------------------------------------- */
 
 typedef struct walk_state {
@@ -323,6 +376,8 @@ int main(void) {
       cmocka_unit_test(the_energy_varies_by_no_more_than_the_error),
       cmocka_unit_test(a_floor_mirrors_a_wall),
       cmocka_unit_test(chains_are_mirrored_with_their_quadratic_springs),
+      cmocka_unit_test(units_of_length_and_time_change_nothing),
+      cmocka_unit_test(rest_has_no_defect),
       cmocka_unit_test(families_along_the_period_agree_with_shooting),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -68,15 +68,18 @@ static ric_status tell_end(const even_start *e, const ric_curve_run *run, ric_er
   snprintf(begin, sizeof begin, what, e->period);
   if (run->end == RIC_CURVE_ENDED)
     return ric_fail(error, RIC_ENUMERIC, "%sthe family turns back at %.4g of them", begin, e->factor);
-  return ric_fail(error, RIC_ENUMERIC, "%sit comes to %.4g of them%s%.80s", begin, e->factor,
-                  run->reason[0] ? ": " : "", run->reason);
+  return ric_fail(error, RIC_ENUMERIC, "%sit comes to %.4g of them: %.80s", begin, e->factor,
+                  run->reason[0] ? run->reason : "its steps are used up");
 }
 
 ric_status even_start_continue(even_start *e, ric_error *error) {
   ric_curve_run run = {0};
+  ric_error why = {0};
   if (lattice_model_is_linear(e->model))
     return RIC_OK;
-  RIC_TRY(ric_family_follow(e->family, e->z, 0, NULL, keep_last, e, &run, error));
+  const ric_status status = ric_family_follow(e->family, e->z, 0, NULL, keep_last, e, &run, &why);
+  if (status != RIC_OK)
+    return ric_fail(error, status, "the motion of the linear part does not go on: %.150s", why.message);
   if (run.end != RIC_CURVE_BOUND || e->factor != 1)
     return tell_end(e, &run, error);
   return lattice_model_rescale(e->model, 1, e->system, error);

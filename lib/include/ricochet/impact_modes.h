@@ -23,7 +23,7 @@
 typedef struct ric_impact_modes ric_impact_modes;
 
 /** @param system  linear lattice or M-C-K system without damping and forcing, K symmetric and positive definite;
- * copied. All its other obstacles, rigid or not, must not be touched
+ * copied. All its other obstacles, rigid or not, must not be touched: none may have its place and side
  *  @param obstacle  that is hit: rigid, not at 0, restitution 1
  *  @returns RIC_EINVAL naming what the system has and should not, a singular K among it; RIC_ENUMERIC where K is
  *           indefinite; RIC_ENOMEM. */
@@ -31,7 +31,8 @@ RIC_API ric_status ric_impact_modes_create(const ric_system *system, size_t obst
                                            ric_error *error);
 RIC_API void ric_impact_modes_destroy(ric_impact_modes **modes);
 
-/** Angular frequencies [n], rising. Borrowed. */
+/** Angular frequencies [n], rising, as accurate as normal_modes.h says; equal where rounding cannot tell them apart.
+ *  Borrowed. */
 RIC_API const double *ric_impact_modes_frequencies(const ric_impact_modes *modes);
 /** Shape of a mode, phi_j [n], phi_i^T M phi_j = delta_ij; of modes of one frequency only the first moves k. Borrowed;
  *  NULL where there is no such mode. */
@@ -40,8 +41,8 @@ RIC_API const double *ric_impact_modes_shape(const ric_impact_modes *modes, size
 /** The orbit of a period, judged as those of chains are, with the default tolerances of orbit.h: `admissible`;
  *  `inadmissible` with what is violated first; `grazing` where a gap is zero, and at a resonance of modes that move k,
  *  where the orbit is the limit of the family, those modes alone; `resonant` at a resonance of a mode that does not
- * move k (`mode` and `harmonic` say which one); `singular` where amplitudes blow up (states NaN). `condition` bounds
- * the largest displacement over |b|.
+ * move k (`mode` and `harmonic` say which one); `singular` where amplitudes blow up (states NaN); `failed` where the
+ *  impulse underflows and the obstacle is not reached. `condition` bounds the largest displacement over |b|.
  *  @param period  > 0
  *  @param orbit  initialised for n coordinates and one impact
  *  @returns RIC_EINVAL; RIC_ELIMIT beyond RIC_MOST_HARMONICS oscillations of the fastest mode; the orbit is then left

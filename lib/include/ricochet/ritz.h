@@ -68,7 +68,8 @@ RIC_API ric_status ric_ritz_residual(ric_ritz *ritz, const double *c, double per
 /** Coefficients that fit a motion best, by least squares over the period: a first guess.
  *  @param shooting, z, period  even motions of this system, period given, with one impact, of this obstacle, at t = 0
  *  @param frequency  w, between 0 and 2 pi / T; 0: of 50 between half of 2 pi / T and all of it the one whose fit
- *                    leaves the smallest |F|: for few functions only (as said above)
+ *                    leaves the smallest |F|, equations of motion over (2 pi / T)^2: for few functions only (as said
+ *                    above)
  *  @param c  [unknowns], set
  *  @returns RIC_EINVAL for another kind of motion or w; what ric_shooting_residual returns; RIC_ENOMEM. */
 RIC_API ric_status ric_ritz_fit(ric_ritz *ritz, ric_shooting *shooting, const double *z, double period,
@@ -77,8 +78,8 @@ RIC_API ric_status ric_ritz_fit(ric_ritz *ritz, ric_shooting *shooting, const do
 /** Solves F = 0 at a period, by Newton's method with line search (SUNDIALS KINSOL).
  *  @param c  [unknowns] guess; set to the solution
  *  @param iterations  may be NULL
- *  @returns RIC_ENUMERIC when it does not converge, with the residual left, or converges to a w that is not between 0
- *           and 2 pi / T; c is then where it got. */
+ *  @returns RIC_ENUMERIC when it does not converge, with the residual left (over the size of the motion, and over
+ *           (2 pi / T)^2), or converges to a w that is not between 0 and 2 pi / T; c is then where it got. */
 RIC_API ric_status ric_ritz_solve(ric_ritz *ritz, double *c, double period, int *iterations, ric_error *error);
 
 /** Solves with N = 1, 2, 3, 4, 6, 8, 12, 16 ... up to that of the options, each from the solution before, until the
@@ -97,6 +98,7 @@ RIC_API ric_status ric_ritz_refine(ric_ritz *ritz, ric_shooting *shooting, const
 RIC_API void ric_ritz_state(const ric_ritz *ritz, const double *c, double period, double t, double *q, double *v);
 
 /** Largest residual of the equations of motion, as an acceleration, over the largest acceleration; sampled closely.
+ *  0 at rest.
  *  @returns NaN for c or a period that are no numbers. */
 RIC_API double ric_ritz_defect(ric_ritz *ritz, const double *c, double period);
 
