@@ -73,8 +73,7 @@ static double *entry(const shooting_spectrum *k, size_t row, size_t column) {
   return &k->matrix[row * k->size + column];
 }
 
-/* Saltation of the impact at the end of a piece. */
-static ric_status jump(ric_shooting *s, const piece_run *run, ric_error *error) {
+ric_status shooting_spectrum_jump(ric_shooting *s, const piece_run *run, ric_error *error) {
   shooting_spectrum *k = s->spectrum;
   size_t n = s->arcs.coordinates, obstacle = run->piece->obstacle;
   double e = s->system->model->restitution(s->system, obstacle);
@@ -169,7 +168,7 @@ static void set_half(ric_shooting *s) {
 
 /* --- the matrix --------------------------------------------------------------------------------------------------- */
 
-static void set_identity(shooting_spectrum *k) {
+void shooting_spectrum_identity(shooting_spectrum *k) {
   memset(k->matrix, 0, k->size * k->size * sizeof *k->matrix);
   for (size_t i = 0; i < k->size; i++)
     *entry(k, i, i) = 1;
@@ -182,7 +181,7 @@ ric_status shooting_spectrum_begin(ric_shooting *s, ric_error *error) {
   if (is_even(s))
     set_start(s);
   else
-    set_identity(s->spectrum);
+    shooting_spectrum_identity(s->spectrum);
   return RIC_OK;
 }
 
@@ -191,7 +190,7 @@ ric_status shooting_spectrum_pass(ric_shooting *s, const piece_run *run, ric_err
     return RIC_OK;
   multiply(s, run);
   if (run->piece->how == PIECE_IMPACT)
-    return jump(s, run, error);
+    return shooting_spectrum_jump(s, run, error);
   if (run->piece->how != PIECE_HALF)
     return RIC_OK;
   RIC_TRY(look_at_turning(s, s->arcs.at_half, run->end, error));

@@ -48,6 +48,13 @@ void shooting_spectrum_destroy(shooting_spectrum **spectrum);
 ric_status shooting_spectrum_begin(ric_shooting *s, ric_error *error);
 ric_status shooting_spectrum_pass(ric_shooting *s, const piece_run *run, ric_error *error);
 
+/** Takes s->spectrum->matrix through the impact at the end of a piece, by its saltation, with s->x before it; or
+ *  `grazing`. */
+ric_status shooting_spectrum_jump(ric_shooting *s, const piece_run *run, ric_error *error);
+
+/** Sets s->spectrum->matrix to the identity. */
+void shooting_spectrum_identity(shooting_spectrum *spectrum);
+
 /** The multipliers of the matrix found. @param m  initialised for n + m */
 ric_status shooting_multipliers(ric_shooting *s, const ric_multiplier_options *options, ric_multipliers *m,
                                 ric_error *error);

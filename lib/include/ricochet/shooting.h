@@ -138,4 +138,14 @@ RIC_API ric_status ric_shooting_multipliers(ric_shooting *shooting, const double
                                             const ric_multiplier_options *options, ric_multipliers *multipliers,
                                             ric_error *error);
 
+/** How small differences of the state of a solution go from one time to another: the derivative of the state at `to` by
+ *  that at `from`, both times standing still, impacts in (from, to] included by their saltation. Not of even motions.
+ *  @param to  in [from, from + T]
+ *  @param x  [n + m] state at `from`, after an impact there; set
+ *  @param transfer  [n + m][n + m] row-major, set; may be NULL
+ *  @returns RIC_EINVAL for even motions and times out of order; RIC_ENUMERIC for an impact on the way that is too slow
+ *           for a derivative; as ric_shooting_residual. */
+RIC_API ric_status ric_shooting_transfer(ric_shooting *shooting, const double *z, double given, double from, double to,
+                                         double *x, double *transfer, ric_error *error);
+
 #endif
