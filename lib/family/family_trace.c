@@ -3,6 +3,7 @@
  * Unknowns are z and the first parameter, equations F = 0 and psi = 0, where psi is what vanishes at the special point.
  * Its derivatives are central differences: they direct Newton's method, and the zeros of psi know nothing of them. */
 #include <math.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -23,6 +24,7 @@ typedef struct tracer {
   double *F;           /* [n] */
   double *slopes;      /* [n + 2] of psi */
   gsl_permutation *order;
+  ric_family_curve_tests tests;
   int (*seen)(const ric_family_curve_point *point, void *user);
   void *user;
   ric_status status;
@@ -99,25 +101,41 @@ static ric_status residual(const double *u, double p, double *F, double *J, doub
   return psi(t, u, first, p, &F[n], error);
 }
 
-static int show(const ric_curve_point *c, void *user) {
-  tracer *t = user;
+/* The point of the curve at (z, first) and second, with its orbit. */
+static ric_status look(tracer *t, const double *u, double p, ric_family_curve_point *point, ric_error *error) {
   ric_family *f = t->f;
   size_t n = f->unknowns;
-  if (c->kind != RIC_CURVE_REGULAR && c->kind != RIC_CURVE_FOLD)
+  RIC_TRY(family_set(f, u[n], p, error));
+  RIC_TRY(ric_shooting_orbit(f->shooting, u, f->given, &f->orbit, error));
+  *point = (ric_family_curve_point){
+      .parameter = u[n], .second = p, .z = u, .given = f->given, .orbit = &f->orbit, .zero = SIZE_MAX};
+  return RIC_OK;
+}
+
+static ric_status test(const double *u, double p, const double *t_u, double t_p, double *values, void *user,
+                       ric_error *error) {
+  tracer *t = user;
+  ric_family_curve_point point;
+  (void)t_u, (void)t_p;
+  RIC_TRY(look(t, u, p, &point, error));
+  const ric_status status = t->tests.values(&point, values, t->tests.user, error);
+  family_forget(t->f);
+  return status;
+}
+
+static int show(const ric_curve_point *c, void *user) {
+  tracer *t = user;
+  ric_family_curve_point point;
+  if (c->kind == RIC_CURVE_BRANCH_POINT)
     return 0;
-  t->status = family_set(f, c->u[n], c->p, t->error);
-  if (t->status == RIC_OK)
-    t->status = ric_shooting_orbit(f->shooting, c->u, f->given, &f->orbit, t->error);
+  t->status = look(t, c->u, c->p, &point, t->error);
   if (t->status != RIC_OK)
     return 1;
-  const ric_family_curve_point point = {.parameter = c->u[n],
-                                        .second = c->p,
-                                        .z = c->u,
-                                        .given = f->given,
-                                        .orbit = &f->orbit,
-                                        .iterations = c->iterations};
+  point.iterations = c->iterations;
+  if (c->kind == RIC_CURVE_TEST)
+    point.zero = c->which;
   int over = t->seen ? t->seen(&point, t->user) : 0;
-  family_forget(f);
+  family_forget(t->f);
   return over;
 }
 
@@ -182,7 +200,11 @@ static ric_status choose_unit(tracer *t, const double *z, double first, double s
 static ric_status walk(tracer *t, const ric_family_point *point, const ric_curve_options *options, ric_curve_run *run,
                        double *u) {
   size_t n = t->f->unknowns;
-  const ric_curve_problem problem = {.unknowns = n + 1, .residual = residual, .user = t};
+  const ric_curve_problem problem = {.unknowns = n + 1,
+                                     .residual = residual,
+                                     .tests = t->tests.count,
+                                     .test = t->tests.count > 0 ? test : NULL,
+                                     .user = t};
   ric_curve *curve = NULL;
   RIC_TRY(choose(t, point));
   memcpy(u, point->z, n * sizeof *u);
@@ -195,11 +217,14 @@ static ric_status walk(tracer *t, const ric_family_point *point, const ric_curve
 }
 
 ric_status ric_family_trace(ric_family *f, const ric_family_point *point, const ric_curve_options *options,
+                            const ric_family_curve_tests *tests,
                             int (*seen)(const ric_family_curve_point *point, void *user), void *user,
                             ric_curve_run *run, ric_error *error) {
   ric_error own;
   size_t n = f->unknowns;
   tracer t = {.f = f, .seen = seen, .user = user, .error = error ? error : &own};
+  if (tests)
+    t.tests = *tests;
   *run = (ric_curve_run){0};
   if (f->problem.parameters != 2)
     return ric_fail(error, RIC_EINVAL, "a family with one parameter, expected two");

@@ -194,8 +194,17 @@ typedef struct trace {
   double low, high; /* of w */
   double worst;     /* of A against the closed form, for grazing */
   double last, last_second;
-  size_t count;
+  double zero; /* second parameter at the zero of a test function */
+  size_t count, zeros;
 } trace;
+
+static const double period_sought = 5;
+
+static ric_status period_test(const ric_family_curve_point *point, double *values, void *user, ric_error *error) {
+  (void)user, (void)error;
+  values[0] = point->orbit->period - period_sought;
+  return RIC_OK;
+}
 
 static int measure(const ric_family_curve_point *point, void *user) {
   trace *t = user;
@@ -203,6 +212,10 @@ static int measure(const ric_family_curve_point *point, void *user) {
   t->last = point->parameter;
   t->last_second = point->second;
   t->count++;
+  if (point->zero != SIZE_MAX) {
+    t->zero = point->second;
+    t->zeros++;
+  }
   return 0;
 }
 
@@ -217,7 +230,8 @@ static int trace_from(const ric_family_point *point, void *user) {
   options.p_high = t->high;
   options.direction = t->high > 1.45 ? 1 : -1;
   options.newton_tol = 1e-11;
-  if (ric_family_trace(t->family, point, &options, measure, t, &run, &error) != RIC_OK)
+  const ric_family_curve_tests tests = {1, period_test, NULL};
+  if (ric_family_trace(t->family, point, &options, &tests, measure, t, &run, &error) != RIC_OK)
     fail_msg("%s", error.message);
   assert_int_equal(run.end, RIC_CURVE_BOUND);
   return 1;
@@ -237,6 +251,9 @@ static void grazing_curve_is_the_closed_form(void **state) {
     assert_int_equal(ric_family_start(t.family, 0.05, &x, &v, NULL, 1, z, NULL, NULL), RIC_OK);
     assert_int_equal(ric_family_follow(t.family, z, 0.05, NULL, trace_from, &t, &run, NULL), RIC_OK);
     print_message("[ %zu points, worst %.3g ]\n", t.count, t.worst);
+    assert_int_equal(t.zeros, up);
+    if (up)
+      assert_close(t.zero, 6.283185307179586 / period_sought, 1e-9);
     assert_true(t.count > 10);
     assert_true(t.worst < 1e-8);
     assert_true(t.last_second == (up ? 3 : 0.3));
@@ -286,7 +303,7 @@ static void curves_of_folds_and_doublings_are_those_of_the_closed_form(void **st
     options.p_high = fmax(from[2], to[2]);
     options.direction = to[2] - from[2];
     options.newton_tol = 1e-11;
-    if (ric_family_trace(family, &point, &options, measure, &t, &run, &error) != RIC_OK)
+    if (ric_family_trace(family, &point, &options, NULL, measure, &t, &run, &error) != RIC_OK)
       fail_msg("%s at w = %g: %s", a->word, from[2], error.message);
     assert_int_equal(run.end, RIC_CURVE_BOUND);
     assert_true(t.last_second == to[2]);

@@ -67,7 +67,7 @@ static ric_status trace_part(trace *t, ric_family *family, const ric_family_poin
   const ric_curve_options options = branch_family_curve_options(t->b, t->part == 0 ? +1 : -1);
   ric_curve_run run = {0};
   ric_error error = {0};
-  const ric_status status = ric_family_trace(family, point, &options, add_point, t, &run, &error);
+  const ric_status status = ric_family_trace(family, point, &options, NULL, add_point, t, &run, &error);
   *closed = status == RIC_OK && run.end == RIC_CURVE_CLOSED;
   if (t->status != RIC_OK || status == RIC_ENOMEM || status == RIC_ESTOPPED)
     return t->status != RIC_OK ? t->status : status;

@@ -86,7 +86,7 @@ static ric_status walk(search *k, const ric_shooting_problem *motion, const doub
   options.points = MOST_STEPS;
   options.newton_tol = 1e-11; /* of an equation whose derivatives are differences */
   options.poll = motion->poll;
-  RIC_TRY(ric_family_trace(k->family, &touch, &options, keep_last, k, &run, error));
+  RIC_TRY(ric_family_trace(k->family, &touch, &options, NULL, keep_last, k, &run, error));
   if (run.end == RIC_CURVE_BOUND && k->factor == 1)
     return RIC_OK;
   return ric_fail(error, RIC_ENUMERIC,

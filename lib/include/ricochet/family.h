@@ -164,13 +164,25 @@ typedef struct ric_family_curve_point {
   double given;
   const ric_orbit *orbit;
   int iterations;
+  size_t zero; /* test function that vanishes there; SIZE_MAX: none */
 } ric_family_curve_point;
+
+/** Functions of the points of a curve, whose zeros are located on it. */
+typedef struct ric_family_curve_tests {
+  size_t count;
+  /** Values [count]; NaN: not defined there. May look at the family's system, which has the point's parameters, and run
+   *  its shooting. Returns RIC_ENUMERIC to have a shorter step tried. */
+  ric_status (*values)(const ric_family_curve_point *point, double *values, void *user, ric_error *error);
+  void *user;
+} ric_family_curve_tests;
 
 /** Follows a fold, a period doubling, a grazing point or the loss of an impact in two parameters, from a point that is
  *  one, by pseudo-arclength. The curve's parameter is the second one.
  *  @param options  of the curve, NULL for the defaults of the family
+ *  @param tests  NULL for none; copied
  *  @returns RIC_EINVAL for other kinds and problems with one parameter; as ric_curve_follow. */
 RIC_API ric_status ric_family_trace(ric_family *family, const ric_family_point *point, const ric_curve_options *options,
+                                    const ric_family_curve_tests *tests,
                                     int (*seen)(const ric_family_curve_point *point, void *user), void *user,
                                     ric_curve_run *run, ric_error *error);
 
