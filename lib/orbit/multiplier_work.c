@@ -41,13 +41,37 @@ ric_status multiplier_matrix_check(const double *M, size_t dimension, size_t tri
   return RIC_OK;
 }
 
+/* Eigenvalues of M + shift I, less the shift. */
+static int eigenvalues(multiplier_work *w, const double *M, double shift) {
+  size_t n = w->copy->size1;
+  memcpy(w->copy->data, M, n * n * sizeof *M);
+  for (size_t i = 0; i < n; i++)
+    w->copy->data[i * (n + 1)] += shift;
+  int failed = gsl_eigen_nonsymm(w->copy, w->values, w->eigen);
+  for (size_t i = 0; i < n && !failed; i++)
+    w->values->data[2 * i] -= shift;
+  return failed;
+}
+
+/* The largest sum of a row's moduli. */
+static double size_of(const double *M, size_t n) {
+  double largest = 0;
+  for (size_t i = 0; i < n; i++) {
+    double sum = 0;
+    for (size_t j = 0; j < n; j++)
+      sum += fabs(M[i * n + j]);
+    largest = fmax(largest, sum);
+  }
+  return largest;
+}
+
 ric_status multiplier_work_find(multiplier_work *w, const double *M, size_t trivial, const ric_multiplier_options *o,
                                 ric_multipliers *m, ric_error *error) {
   size_t n = w->copy->size1;
   RIC_TRY(multiplier_matrix_check(M, n, trivial, m, error));
   ric_multipliers_fail(m, "not computed");
-  memcpy(w->copy->data, M, n * n * sizeof *M);
-  if (gsl_eigen_nonsymm(w->copy, w->values, w->eigen) != GSL_SUCCESS)
+  /* GSL compares what it neglects with the diagonal beside it: where that is zero it may try in vain. */
+  if (eigenvalues(w, M, 0) != GSL_SUCCESS && eigenvalues(w, M, size_of(M, n)) != GSL_SUCCESS)
     return ric_fail(error, RIC_ENUMERIC, "eigenvalues of a matrix of size %zu: they do not converge", n);
   for (size_t i = 0; i < n; i++)
     m->mu[i] = (ric_complex){w->values->data[2 * i], w->values->data[2 * i + 1]};

@@ -16,6 +16,7 @@ PUBLIC = {  # public headers by room
     "modes": {"impact_modes", "ritz"},
     "branch": {"continuation"},
     "family": {"family"},
+    "grazing": {"bypass", "grazing", "grazing_criterion", "grazing_map"},
     "attractor": {"lyapunov"},
 }
 BASE = {"status", "export", "version"}

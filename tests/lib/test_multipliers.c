@@ -105,6 +105,19 @@ static void multipliers_far_from_1_are_not_trivial(void **state) {
   ric_multipliers_clear(&m);
 }
 
+/* GSL 2.7 gives up on this one: zeros on the diagonal beside entries that are next to nothing. */
+static void zeros_on_the_diagonal_do_not_prevent_convergence(void **state) {
+  (void)state;
+  static const double M[9] = {-0.125, 0, 0, 0x1p-43, 0, -1, 0x1p-26, 1, 0};
+  ric_multipliers m;
+  assert_int_equal(ric_multipliers_init(&m, 3, NULL), RIC_OK);
+  assert_int_equal(ric_multipliers_of_matrix(M, 3, 0, NULL, &m, NULL), RIC_OK);
+  assert_close(m.mu[0].re, 0, 1e-14);
+  assert_close(m.mu[0].im, 1, 1e-14);
+  assert_close(m.mu[2].re, -0.125, 1e-14);
+  ric_multipliers_clear(&m);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(verdict_leaves_out_the_trivial_multipliers),
@@ -114,6 +127,7 @@ int main(void) {
       cmocka_unit_test(bad_arguments_are_refused),
       cmocka_unit_test(verdicts_and_kinds_have_names),
       cmocka_unit_test(multipliers_far_from_1_are_not_trivial),
+      cmocka_unit_test(zeros_on_the_diagonal_do_not_prevent_convergence),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

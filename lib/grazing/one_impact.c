@@ -1,0 +1,146 @@
+#include "one_impact.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <gsl/gsl_blas.h>
+#include <gsl/gsl_linalg.h>
+
+/* Iterates of the closed forms: their rounding errors add up, and d falls by lambda^2 with each of them. */
+enum { MOST_PERIOD = 10000 };
+
+static ric_status allocate(one_impact *o, ric_error *error) {
+  size_t m = o->map->size, n = o->period;
+  o->first = calloc(n, sizeof *o->first);
+  o->second = calloc(n, sizeof *o->second);
+  o->xi = gsl_vector_alloc(m);
+  o->kappa = gsl_vector_alloc(m);
+  o->vector = gsl_vector_alloc(m);
+  o->reflectors = gsl_vector_alloc(m);
+  o->norms = gsl_vector_alloc(m);
+  o->power = gsl_matrix_alloc(m, m);
+  o->factors = gsl_matrix_alloc(m, m);
+  o->derivative = gsl_matrix_alloc(m, m);
+  o->order = gsl_permutation_alloc(m);
+  bool has_vectors = o->first && o->second && o->xi && o->kappa && o->vector && o->reflectors && o->norms;
+  if (!(has_vectors && o->power && o->factors && o->derivative && o->order))
+    return ric_fail(error, RIC_ENOMEM, "no memory for orbits of period %zu of a map of size %zu", n, m);
+  return ric_multipliers_init(&o->multipliers, m, error);
+}
+
+/* L^n by squaring. The matrices of the solves and the derivative are its room. */
+static void raise_power(one_impact *o) {
+  gsl_matrix *square = o->factors, *product = o->derivative;
+  size_t m = o->map->size;
+  memcpy(square->data, o->map->L, m * m * sizeof *square->data);
+  gsl_matrix_set_identity(o->power);
+  for (size_t rest = o->period; rest > 0; rest /= 2) {
+    if (rest % 2 == 1) {
+      gsl_blas_dgemm(CblasNoTrans, CblasNoTrans, 1, o->power, square, 0, product);
+      gsl_matrix_memcpy(o->power, product);
+    }
+    if (rest > 1) { /* the next square may overflow where L^n does not */
+      gsl_blas_dgemm(CblasNoTrans, CblasNoTrans, 1, square, square, 0, product);
+      gsl_matrix_memcpy(square, product);
+    }
+  }
+}
+
+/* Goes through scale e L^(j-1) x, j = 1 ... n, and leaves x at L^(n-1) x. */
+static void project(one_impact *o, const gsl_vector *e, double scale, gsl_vector *x, double *values) {
+  size_t m = o->map->size;
+  gsl_matrix_const_view L = gsl_matrix_const_view_array(o->map->L, m, m);
+  gsl_vector_view next = gsl_matrix_row(o->derivative, 0);
+  for (size_t j = 0; j < o->period; j++) {
+    if (j > 0) {
+      gsl_blas_dgemv(CblasNoTrans, 1, &L.matrix, x, 0, &next.vector);
+      gsl_vector_memcpy(x, &next.vector);
+    }
+    gsl_blas_ddot(e, x, &values[j]);
+    values[j] *= scale;
+  }
+}
+
+ric_status one_impact_init(one_impact *o, const ric_grazing_map *map, size_t period, ric_error *error) {
+  *o = (one_impact){.map = map, .period = period};
+  if (period < 1 || period > MOST_PERIOD)
+    return ric_fail(error, RIC_EINVAL, "period = %zu, expected 1 to %d", period, MOST_PERIOD);
+  RIC_TRY(ric_grazing_map_check(map, error));
+  RIC_TRY(allocate(o, error));
+  size_t bytes = map->size * sizeof *map->xi;
+  raise_power(o);
+  memcpy(o->vector->data, map->eta, bytes);
+  RIC_TRY(one_impact_solve(o, -1, true, o->vector, error));
+  memcpy(o->xi->data, map->xi, bytes);
+  memcpy(o->kappa->data, map->kappa, bytes);
+  project(o, o->vector, map->stretch, o->xi, o->first);
+  project(o, o->vector, 1, o->kappa, o->second);
+  return RIC_OK;
+}
+
+void one_impact_clear(one_impact *o) {
+  free(o->first);
+  free(o->second);
+  gsl_vector_free(o->xi);
+  gsl_vector_free(o->kappa);
+  gsl_vector_free(o->vector);
+  gsl_vector_free(o->reflectors);
+  gsl_vector_free(o->norms);
+  gsl_matrix_free(o->power);
+  gsl_matrix_free(o->factors);
+  gsl_matrix_free(o->derivative);
+  gsl_permutation_free(o->order);
+  ric_multipliers_clear(&o->multipliers);
+  *o = (one_impact){0};
+}
+
+double one_impact_d(const one_impact *o, double y) {
+  double first = o->first[o->period - 1], second = 1 + o->second[o->period - 1];
+  if (y == INFINITY && second == 0) /* not 0 times infinity */
+    return first == 0 ? 0 : y * first;
+  return y == INFINITY ? y * second : y * (first + y * second);
+}
+
+void one_impact_clearance(const one_impact *o, size_t j, double *steady, double *slope) {
+  *steady = o->first[j - 1] - o->first[o->period - 1];
+  *slope = o->second[j - 1] - o->second[o->period - 1] - 1;
+}
+
+ric_status one_impact_multipliers(one_impact *o, double y, ric_error *error) {
+  size_t m = o->map->size;
+  gsl_vector_const_view eta = gsl_vector_const_view_array(o->map->eta, m);
+  gsl_matrix_memcpy(o->derivative, o->power);
+  gsl_blas_dger(-o->map->stretch / (2 * y), o->xi, &eta.vector, o->derivative);
+  gsl_blas_dger(-1, o->kappa, &eta.vector, o->derivative);
+  for (size_t i = 0; i < m * m; i++)
+    if (!isfinite(o->derivative->data[i]))
+      return ric_fail(error, RIC_ENUMERIC, "y = %g: the derivative of iterate %zu overflows", y, o->period);
+  return ric_multipliers_of_matrix(o->derivative->data, m, 0, NULL, &o->multipliers, error);
+}
+
+/* Whether the last pivot, the smallest one, is rounding beside the largest entry of the matrix. */
+static bool is_singular(const gsl_matrix *factors, double largest) {
+  size_t m = factors->size1;
+  return !(fabs(gsl_matrix_get(factors, m - 1, m - 1)) > (double)m * DBL_EPSILON * largest);
+}
+
+ric_status one_impact_solve(one_impact *o, int sign, bool transposed, gsl_vector *b, ric_error *error) {
+  size_t m = o->map->size;
+  double largest = 1; /* I and L^n may cancel: what is left is compared with them */
+  int parity;
+  for (size_t i = 0; i < m; i++)
+    for (size_t j = 0; j < m; j++) {
+      double entry = transposed ? gsl_matrix_get(o->power, j, i) : gsl_matrix_get(o->power, i, j);
+      if (!isfinite(entry))
+        return ric_fail(error, RIC_ENUMERIC, "period = %zu: L^n overflows", o->period);
+      largest = fmax(largest, fabs(entry));
+      gsl_matrix_set(o->factors, i, j, (i == j) + sign * entry);
+    }
+  /* Not LU: GSL's takes memory, and does not look whether there is any. */
+  gsl_linalg_QRPT_decomp(o->factors, o->reflectors, o->order, &parity, o->norms);
+  if (is_singular(o->factors, largest) || gsl_linalg_QRPT_svx(o->factors, o->reflectors, o->order, b) != 0)
+    return ric_fail(error, RIC_ENUMERIC, "period = %zu: I %c L^n is singular", o->period, sign < 0 ? '-' : '+');
+  return RIC_OK;
+}
