@@ -1,0 +1,287 @@
+#include "ricochet/grazing_criterion.h"
+
+#include <math.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include <gsl/gsl_errno.h>
+
+#include "coefficients.h"
+#include "dominant.h"
+#include "model/largest.h"
+#include "tail.h"
+
+/* Moduli above 1 less this lie on the circle or outside; as multiplier_tol of ric_multiplier_options. */
+static const double circle_tol = 1e-9;
+/* What the proof leaves between the rest and alpha: rounding in alpha is below a hundredth of each of its factors. */
+static const double tail_margin = 0.1;
+
+const char *ric_grazing_verdict_name(ric_grazing_verdict verdict) {
+  switch (verdict) {
+#define X(name, text)                                                                                                  \
+  case name:                                                                                                           \
+    return text;
+    RIC_GRAZING_VERDICT_LIST(X)
+#undef X
+  case RIC_GRAZING_VERDICTS:
+    break;
+  }
+  return "unknown verdict";
+}
+
+const char *ric_grazing_regime_name(ric_grazing_regime regime) {
+  switch (regime) {
+#define X(name, text)                                                                                                  \
+  case name:                                                                                                           \
+    return text;
+    RIC_GRAZING_REGIME_LIST(X)
+#undef X
+  case RIC_GRAZING_REGIMES:
+    break;
+  }
+  return "unknown regime";
+}
+
+ric_grazing_criterion_options ric_grazing_criterion_options_default(void) {
+  return (ric_grazing_criterion_options){.zero_tol = 1e-9, .apart_tol = 1e-6, .most = 100000};
+}
+
+static ric_status check_options(const ric_grazing_criterion_options *o, ric_error *error) {
+  if (!(o->zero_tol >= 0 && o->zero_tol < 1))
+    return ric_fail(error, RIC_EINVAL, "zero_tol = %g, expected 0 <= zero_tol < 1", o->zero_tol);
+  if (!(o->apart_tol >= 0 && o->apart_tol < 1))
+    return ric_fail(error, RIC_EINVAL, "apart_tol = %g, expected 0 <= apart_tol < 1", o->apart_tol);
+  if (o->most < 1)
+    return ric_fail(error, RIC_EINVAL, "most = 0, expected at least 1 coefficient");
+  return RIC_OK;
+}
+
+/* What is at work in one call. */
+typedef struct criterion_work {
+  const ric_grazing_criterion_options *options;
+  balanced_map map;
+  dominant_multiplier dominant;
+  tail_proof tail;
+  coefficient_run run;
+  double alpha;  /* of the balanced map */
+  bool provable; /* whether the tail has a proof that may be tried */
+} criterion_work;
+
+/* --- signs -------------------------------------------------------------------------------------------------------- */
+
+static bool tail_is_proved(criterion_work *w) {
+  return w->provable && tail_proof_bound(&w->tail) < (1 - tail_margin) * w->alpha;
+}
+
+/* Goes through the coefficients until one is negative, or the rest are positive, or there are no more to look at. */
+static void look_at_coefficients(criterion_work *w, ric_grazing_criterion *c) {
+  coefficient_run *run = &w->run;
+  for (;;) {
+    int sign = coefficient_run_sign(run, w->options->zero_tol);
+    if (sign == 0 && c->first_zero == SIZE_MAX)
+      c->first_zero = run->i;
+    if (sign < 0) {
+      c->first_negative = run->i;
+      return;
+    }
+    if (c->settled == SIZE_MAX && tail_is_proved(w))
+      c->settled = 2 * run->i;
+    if ((c->settled != SIZE_MAX && run->i + 1 >= c->settled) || run->i + 1 >= w->options->most ||
+        coefficient_run_over(run))
+      return;
+    coefficient_run_advance(run);
+    if (w->provable && c->settled == SIZE_MAX)
+      tail_proof_advance(&w->tail);
+  }
+}
+
+/* --- the verdict -------------------------------------------------------------------------------------------------- */
+
+static void name_multiplier(ric_complex z, char *text, size_t size) {
+  if (z.im == 0)
+    snprintf(text, size, "%.9g", z.re);
+  else
+    snprintf(text, size, "%.9g %+.9gi", z.re, z.im);
+}
+
+/* A condition on the dominant multiplier alone that fails. @returns whether there is one */
+static bool spectrum_fails(const criterion_work *w, ric_grazing_criterion *c) {
+  const dominant_multiplier *d = &w->dominant;
+  double modulus = hypot(c->dominant.re, c->dominant.im);
+  char name[64];
+  name_multiplier(c->dominant, name, sizeof name);
+  if (!(modulus < 1 - circle_tol))
+    snprintf(c->reason, sizeof c->reason, "multiplier %s of modulus %.9g does not lie inside the unit circle", name,
+             modulus);
+  else if (modulus == 0)
+    snprintf(c->reason, sizeof c->reason, "all multipliers are zero, and so is c_i from some i on");
+  else if (!d->real)
+    snprintf(c->reason, sizeof c->reason, "the dominant multiplier %s is complex", name);
+  else if (!d->alone)
+    snprintf(c->reason, sizeof c->reason, "the dominant multiplier %s is not alone: another has the modulus %.9g", name,
+             c->second);
+  else if (d->value.re < 0)
+    snprintf(c->reason, sizeof c->reason, "the dominant multiplier %s is negative", name);
+  else if (!dominant_is_told(d))
+    snprintf(c->reason, sizeof c->reason,
+             "the dominant multiplier %s is not told from others: rounding reaches %.3g of the distance", name,
+             d->accuracy);
+  else
+    return false;
+  return true;
+}
+
+/* One on what eta and xi see of it. */
+static bool component_fails(const criterion_work *w, ric_grazing_criterion *c) {
+  const dominant_multiplier *d = &w->dominant;
+  if (dominant_is_coupled(d))
+    return false;
+  bool seen = fabs(d->seen) > d->seen_tol;
+  snprintf(c->reason, sizeof c->reason, "%s the eigenvector of the dominant multiplier %.9g",
+           seen ? "xi does not excite" : "eta does not see", c->dominant.re);
+  return true;
+}
+
+/* One on the coefficients. */
+static bool coefficients_fail(const criterion_work *w, ric_grazing_criterion *c) {
+  if (c->first_zero != SIZE_MAX)
+    snprintf(c->reason, sizeof c->reason, "c_%zu is zero within the tolerance: higher orders decide", c->first_zero);
+  else if (!(c->alpha > 0))
+    snprintf(c->reason, sizeof c->reason, "alpha = %.3g is negative, and none of the first %zu c_i", c->alpha,
+             w->run.i + 1);
+  else if (!w->tail.contracting)
+    snprintf(c->reason, sizeof c->reason, "what follows the dominant multiplier %.9g has no bound beyond rounding",
+             c->dominant.re);
+  else if (c->settled == SIZE_MAX || w->run.i + 1 < c->settled)
+    snprintf(c->reason, sizeof c->reason,
+             "%zu coefficients are positive, but the next multiplier, of modulus %.9g, "
+             "may outweigh the dominant one, %.9g, later",
+             w->run.i + 1, c->second, c->dominant.re);
+  else
+    return false;
+  return true;
+}
+
+static ric_grazing_regime regime_of(double lambda, double apart_tol) {
+  const double low = 1.0 / 4, high = 2.0 / 3;
+  if (fabs(lambda - low) <= apart_tol * low || fabs(lambda - high) <= apart_tol * high)
+    return RIC_REGIME_BORDER;
+  if (lambda < low)
+    return RIC_REGIME_OVERLAP;
+  return lambda < high ? RIC_REGIME_WINDOWS : RIC_REGIME_CHAOS;
+}
+
+static void decide(const criterion_work *w, ric_grazing_criterion *c) {
+  if (c->first_negative != SIZE_MAX) {
+    c->verdict = RIC_GRAZING_DISCONTINUOUS;
+    snprintf(c->reason, sizeof c->reason, "c_%zu = %.3g is negative: an impact leads to another, much faster one",
+             c->first_negative, coefficient_run_value(&w->run));
+  } else if (!spectrum_fails(w, c) && !component_fails(w, c) && !coefficients_fail(w, c)) {
+    c->verdict = RIC_GRAZING_CONTINUOUS;
+    c->regime = regime_of(c->dominant.re, w->options->apart_tol);
+    c->reason[0] = '\0';
+  }
+  if (c->verdict != RIC_GRAZING_CONTINUOUS)
+    c->settled = SIZE_MAX;
+}
+
+/* --- the call ----------------------------------------------------------------------------------------------------- */
+
+static void describe_dominant(criterion_work *w, ric_grazing_criterion *c) {
+  const dominant_multiplier *d = &w->dominant;
+  long exponent = w->map.L_exponent;
+  bool known = d->real && d->alone && dominant_is_told(d);
+  c->dominant = (ric_complex){scalbln(d->value.re, exponent), scalbln(d->value.im, exponent)};
+  c->second = scalbln(d->second, exponent);
+  w->alpha = known ? d->seen * d->driven : NAN;
+  c->alpha = scalbln(w->alpha, w->map.c_exponent);
+}
+
+static ric_status judge(criterion_work *w, const ric_grazing_map *map, ric_grazing_criterion *c, ric_error *error) {
+  const ric_grazing_criterion_options *o = w->options;
+  *c = (ric_grazing_criterion){.verdict = RIC_GRAZING_UNDECIDED,
+                               .regime = RIC_REGIME_NONE,
+                               .first_negative = SIZE_MAX,
+                               .first_zero = SIZE_MAX,
+                               .settled = SIZE_MAX};
+  RIC_TRY(balanced_map_init(&w->map, map, error));
+  RIC_TRY(dominant_find(&w->dominant, &w->map, o->zero_tol, o->apart_tol, error));
+  RIC_TRY(coefficient_run_init(&w->run, &w->map, &w->dominant, error));
+  describe_dominant(w, c);
+  if (w->alpha > 0 && w->dominant.value.re > 0) {
+    RIC_TRY(tail_proof_init(&w->tail, &w->map, &w->dominant, error));
+    w->provable = w->tail.contracting && dominant_is_coupled(&w->dominant);
+  }
+  look_at_coefficients(w, c);
+  decide(w, c);
+  return RIC_OK;
+}
+
+static ric_status fill_coefficients(const criterion_work *w, double *coefficients, size_t count, ric_error *error) {
+  coefficient_run run;
+  RIC_TRY(coefficient_run_init(&run, &w->map, &w->dominant, error));
+  for (size_t i = 0; i < count; i++) {
+    coefficients[i] = coefficient_run_value(&run);
+    coefficient_run_advance(&run);
+  }
+  coefficient_run_clear(&run);
+  return RIC_OK;
+}
+
+/* Back in coordinates of the map. */
+static void fill_departure(const criterion_work *w, const ric_grazing_criterion *c, double *departure) {
+  size_t n = w->map.n;
+  double sum = 0, most;
+  for (size_t k = 0; k < n; k++)
+    departure[k] = c->first_negative != SIZE_MAX ? w->map.scale[k] * w->run.x[k] : NAN;
+  most = largest(departure, n);
+  for (size_t k = 0; k < n; k++)
+    sum = hypot(sum, departure[k] / most);
+  for (size_t k = 0; k < n; k++)
+    departure[k] = departure[k] / most / sum;
+}
+
+ric_status ric_grazing_criterion_find(const ric_grazing_map *map, const ric_grazing_criterion_options *options,
+                                      ric_grazing_criterion *criterion, double *coefficients, size_t count,
+                                      double *departure, ric_error *error) {
+  const ric_grazing_criterion_options o = options ? *options : ric_grazing_criterion_options_default();
+  ric_grazing_criterion found;
+  criterion_work work = {.options = &o};
+  RIC_TRY(ric_grazing_map_check(map, error));
+  RIC_TRY(check_options(&o, error));
+  if (!coefficients && count > 0)
+    return ric_fail(error, RIC_EINVAL, "no room for coefficients, expected room for count = %zu", count);
+  gsl_error_handler_t *handler = gsl_set_error_handler_off();
+  ric_status status = judge(&work, map, &found, error);
+  if (status == RIC_OK)
+    status = fill_coefficients(&work, coefficients, count, error);
+  if (status == RIC_OK && departure)
+    fill_departure(&work, &found, departure);
+  if (status == RIC_OK)
+    *criterion = found;
+  coefficient_run_clear(&work.run);
+  tail_proof_clear(&work.tail);
+  dominant_clear(&work.dominant);
+  balanced_map_clear(&work.map);
+  gsl_set_error_handler(handler);
+  return status;
+}
+
+/* --- windows ------------------------------------------------------------------------------------------------------ */
+
+ric_status ric_grazing_predict_window(const ric_grazing_criterion *criterion, double stretch, size_t period,
+                                      double *border, double *flip, ric_error *error) {
+  if (criterion->verdict != RIC_GRAZING_CONTINUOUS)
+    return ric_fail(error, RIC_EINVAL, "a bifurcation that is %s, expected a continuous one",
+                    ric_grazing_verdict_name(criterion->verdict));
+  if (!(stretch > 0 && stretch < INFINITY))
+    return ric_fail(error, RIC_EINVAL, "stretch = %g, expected a finite number > 0", stretch);
+  if (period < 2)
+    return ric_fail(error, RIC_EINVAL, "period = %zu, expected at least 2", period);
+  double lambda = criterion->dominant.re, reach = criterion->alpha * stretch;
+  double at_border = reach * pow(lambda, (double)(period - 2)), at_flip = reach * pow(lambda, (double)(period - 1));
+  *border = (1 - lambda) * at_border * at_border;
+  *flip = 0.75 * at_flip * at_flip;
+  return RIC_OK;
+}

@@ -1,0 +1,32 @@
+/* Small grazing maps given by their numbers, in any coordinates, and their criterion. */
+#ifndef RICOCHET_JUDGED_MAP_H
+#define RICOCHET_JUDGED_MAP_H
+
+#include <ricochet/grazing_criterion.h>
+
+#include "scenario/random_source.h"
+
+enum { most_size = 8 };
+
+/** Maps of size n, freed by free_map: zero, with these numbers, and with a diagonal L. */
+ric_grazing_map empty_map(size_t n);
+ric_grazing_map map_of(size_t n, const double *L, const double *eta, const double *xi);
+ric_grazing_map diagonal_map(size_t n, const double *multipliers, const double *eta, const double *xi);
+void free_map(ric_grazing_map *map);
+
+/** (6.2)-(6.5) of [FN97]. */
+ric_grazing_map example(double lambda, double omega);
+
+/** L -> S L S^-1, eta -> eta S^-1, xi -> S xi for S [n][n], n <= most_size. */
+void change_coordinates(ric_grazing_map *map, const double *S);
+
+/** Rows of a random matrix times powers of ten up to 10^+-decades. */
+void random_coordinates(random_source *source, double decades, size_t n, double *S);
+
+/** Its criterion with the defaults, whose parts must agree with its verdict. */
+ric_grazing_criterion find(const ric_grazing_map *map);
+
+/** The same of a map that is not needed any more, and freed. */
+ric_grazing_criterion find_once(ric_grazing_map map);
+
+#endif
