@@ -34,6 +34,12 @@ static void read_coordinate(const ric_segment *piece, const ric_obstacle *o, gap
   part->c[0] = o->side * (c[0] - o->position);
 }
 
+static void differentiate(const ric_segment *piece, gap_part *part) {
+  for (int j = 1; j <= part->degree; j++)
+    part->c[j - 1] = j * part->c[j] / piece->length;
+  part->c[part->degree] = 0;
+}
+
 static double point(int k) {
   return k < GAP_NODES ? chebyshev_point(k, GAP_DEGREE) : probes[k - GAP_NODES];
 }
@@ -55,6 +61,8 @@ static const char *value_at(const gap_reader *r, size_t obstacle, watch what, do
   const ric_system *s = r->flow->system;
   if (what == WATCH_FORCE)
     return s->model->reaction(s, r->flow->contact, obstacle, t, q, q + s->coordinates, value);
+  if (what == WATCH_RATE)
+    return s->model->gap_rate(s, obstacle, t, q, q + s->coordinates, value);
   return s->model->gap(s, obstacle, t, q, value);
 }
 
@@ -107,6 +115,8 @@ const char *gap_read(gap_reader *reader, const ric_segment *piece, size_t obstac
     if (trouble)
       return trouble;
   }
+  if (of_coordinate && what == WATCH_RATE)
+    differentiate(piece, part);
   for (int j = 0; what == WATCH_PRESS && j <= part->degree; j++)
     part->c[j] = -part->c[j];
   return part->degree < 0 ? "the force of a held contact could not be evaluated" : NULL;

@@ -12,11 +12,13 @@
 
 enum { GAP_DEGREE = 12, GAP_NODES = GAP_DEGREE + 1, GAP_PROBES = 2 };
 
-/** Functions that are positive until the next event of a contact. */
+/** Functions that are positive until the next event of a contact, and the gap rate, which shows where the gap is
+ * smallest: gaps that hardly change over a step lose that in their rounding. */
 typedef enum watch {
   WATCH_GAP,   /* of an open contact */
   WATCH_PRESS, /* minus the gap of a pressed one */
-  WATCH_FORCE  /* of a held one */
+  WATCH_FORCE, /* of a held one */
+  WATCH_RATE   /* of the gap, in time */
 } watch;
 
 /** The function on a part [from, to] of a piece, in y = (x - from) / (to - from). */

@@ -35,10 +35,10 @@ void impact_solver_clear(impact_solver *solver) {
   *solver = (impact_solver){0};
 }
 
-/* Room for `count` directions at a time, and for their complementarity problem. */
-static ric_status reserve(impact_solver *s, size_t count, ric_error *error) {
+/* Room for directions, and for their complementarity problem. */
+ric_status impact_solver_reserve(impact_solver *s, size_t count, ric_error *error) {
   size_t m = s->system->speeds;
-  if (count <= s->capacity)
+  if (count <= s->capacity || !s->system->model->direction)
     return RIC_OK;
   impact_solver kept = {.system = s->system, .lcp = s->lcp, .before = s->before, .after = s->after};
   s->lcp = (complementarity_work){0};
@@ -193,10 +193,10 @@ ric_status impact_apply(impact_solver *solver, double t, double *q, double *u, i
   if (!solver->system->model->direction)
     return apply_maps(solver, t, q, contacts, count, error);
   if (!solver->system->uncoupled && count > 1) {
-    RIC_TRY(reserve(solver, count, error));
+    RIC_TRY(impact_solver_reserve(solver, count, error));
     return apply_together(solver, t, q, u, contacts, count, error);
   }
-  RIC_TRY(reserve(solver, 1, error));
+  RIC_TRY(impact_solver_reserve(solver, 1, error));
   for (size_t i = 0; i < count; i++)
     RIC_TRY(apply_alone(solver, t, q, u, &contacts[i], error));
   return RIC_OK;
@@ -247,7 +247,7 @@ ric_status impact_reflect(impact_solver *solver, double t, const double *q, doub
                           const double *restitution, size_t count, double *loss, ric_error *error) {
   size_t together = solver->system->uncoupled ? 1 : count;
   double sum = 0;
-  RIC_TRY(reserve(solver, together, error));
+  RIC_TRY(impact_solver_reserve(solver, together, error));
   for (size_t i = 0; i < count; i += together)
     RIC_TRY(
         reflect_together(solver, t, q, u, obstacles + i, restitution ? restitution + i : NULL, together, &sum, error));
@@ -258,7 +258,7 @@ ric_status impact_reflect(impact_solver *solver, double t, const double *q, doub
 
 ric_status impact_close_in(impact_solver *solver, double t, const double *q, double *u, const size_t *obstacles,
                            size_t count, ric_error *error) {
-  RIC_TRY(reserve(solver, count, error));
+  RIC_TRY(impact_solver_reserve(solver, count, error));
   for (size_t i = 0; i < count; i++) {
     RIC_TRY(find_direction(solver, i, obstacles[i], t, q, error));
     solver->solution[i] = -ric_system_gap(solver->system, obstacles[i], t, q);
@@ -300,7 +300,7 @@ ric_status contact_forces(impact_solver *solver, double t, const double *q, cons
                           size_t count, double *lambda, ric_error *error) {
   bool maps = !solver->system->model->direction, alone = maps || solver->system->uncoupled || count == 1;
   if (!maps)
-    RIC_TRY(reserve(solver, alone ? 1 : count, error));
+    RIC_TRY(impact_solver_reserve(solver, alone ? 1 : count, error));
   for (size_t i = 0; alone && i < count; i++)
     RIC_TRY(force_alone(solver, t, q, obstacles[i], &b[i], &lambda[i], error));
   if (alone)

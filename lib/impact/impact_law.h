@@ -39,6 +39,9 @@ typedef struct impact_solver {
 ric_status impact_solver_init(impact_solver *solver, const ric_system *system, ric_error *error);
 void impact_solver_clear(impact_solver *solver);
 
+/** Makes room for `count` contacts at one time, so that as many need no memory later. */
+ric_status impact_solver_reserve(impact_solver *solver, size_t count, ric_error *error);
+
 /** Applies the law to contacts [count] with their `obstacle` and `restitution` given; sets all else in them.
  *  @param q, u  [n], [m] state; u changes (q for first-order systems) */
 ric_status impact_apply(impact_solver *solver, double t, double *q, double *u, impact *contacts, size_t count,

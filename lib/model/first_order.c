@@ -84,6 +84,7 @@ static const system_model model_table = {.rate = rate,
                                          .gap_rate = first_order_gap_rate,
                                          .gap_acceleration = first_order_gap_acceleration,
                                          .impact = impact,
+                                         .impact_slope = first_order_impact_slope,
                                          .reaction = first_order_reaction,
                                          .energy = energy,
                                          .restitution = restitution,
@@ -111,6 +112,9 @@ static size_t lay_out(first_order *s, double *block) {
   s->after = number_block_take(block, &used, n);
   s->free_rate = number_block_take(block, &used, n);
   s->table = number_block_take(block, &used, FIRST_ORDER_TRIALS * n);
+  s->foot = number_block_take(block, &used, n);
+  s->approach = number_block_take(block, &used, n);
+  s->limit = number_block_take(block, &used, n);
   s->direction = number_block_take(block, &used, k * n);
   s->matrix = number_block_take(block, &used, k * k);
   s->lambda = number_block_take(block, &used, k);

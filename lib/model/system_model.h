@@ -27,6 +27,15 @@ typedef struct contact_direction {
   double offset;
 } contact_direction;
 
+/** What an impact map does where the gap rate vanishes. */
+typedef struct impact_slope {
+  double turn;  /* how fast the gap rate changes along xi: 1 + the restitution */
+  bool exists;  /* the change of state is smooth in the gap rate and vanishes with it */
+  double moved; /* largest change of a number of the state at ... */
+  double rate;  /* this gap rate, close to zero */
+  double power; /* of the gap rate with which it vanishes: 1 of smooth maps, 0 where they do not tend to the identity */
+} impact_slope;
+
 /** Tangent vectors of a state, side by side: q [coordinates][columns], u [speeds][columns], row-major. */
 typedef struct tangents {
   size_t columns;
@@ -54,6 +63,10 @@ typedef struct system_model {
   const char *(*direction)(const ric_system *s, size_t obstacle, double t, const double *q, contact_direction *d);
   /** State after an impact of first-order systems; NULL for all others. */
   const char *(*impact)(const ric_system *s, size_t obstacle, double t, const double *x, double *x_after);
+  /** Change of state xi [n] per gap rate of impacts whose gap rate vanishes, with its sign turned; at the state of
+   *  zero gap rate beside x. NULL for all but first-order systems. */
+  const char *(*impact_slope)(const ric_system *s, size_t obstacle, double t, const double *x, double *xi,
+                              impact_slope *found);
   /** Force lambda of one held contact, given which contacts are held. */
   const char *(*reaction)(const ric_system *s, const unsigned char *contact, size_t obstacle, double t, const double *q,
                           const double *u, double *lambda);

@@ -1,4 +1,4 @@
-/* Free motion along a piece of an arc, with tangent vectors: internal to the room.
+/* Free motion along a piece of an arc, with tangent vectors: internal to the library.
  *
  * Rigid obstacles let it pass: where it goes through one it is no motion of the system, but the equations of shooting
  * have their values there. Compliant obstacles act. Without them the flow alone is enough, and time may run backwards.

@@ -360,6 +360,21 @@ static ric_status look_at_a_family(ric_system *system, ric_motion_kind kind) {
   return status;
 }
 
+static void the_bypass_map_allocates_nothing(void **state) {
+  (void)state;
+  forced_oscillator o;
+  ric_bypass *bypass = NULL;
+  double image[2];
+  forced_oscillator_init(&o);
+  assert_int_equal(ric_bypass_create(o.system, 0, NULL, &bypass, NULL), RIC_OK);
+  size_t before = allocations;
+  for (int k = 1; k < 100; k++)
+    assert_int_equal(ric_bypass_map(bypass, 2, (double[]){1 + 1e-4 * k, 0.01}, image, NULL, NULL), RIC_OK);
+  assert_int_equal(allocations - before, 0);
+  ric_bypass_destroy(&bypass);
+  forced_oscillator_clear(&o);
+}
+
 static void families_without_memory_are_refused(void **state) {
   (void)state;
   ric_lattice lattice = ric_lattice_default(2, RIC_ENDS_FREE);
@@ -461,6 +476,7 @@ int main(void) {
       cmocka_unit_test(moving_with_other_numbers_allocates_nothing),
       cmocka_unit_test(following_a_family_again_allocates_nothing),
       cmocka_unit_test(following_a_forced_family_again_allocates_nothing),
+      cmocka_unit_test(the_bypass_map_allocates_nothing),
       cmocka_unit_test(families_without_memory_are_refused),
       cmocka_unit_test(following_a_curve_allocates_nothing),
       cmocka_unit_test(equations_of_ritz_allocate_nothing),

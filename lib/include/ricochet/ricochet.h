@@ -6,6 +6,7 @@
 #ifndef RICOCHET_H
 #define RICOCHET_H
 
+#include "bypass.h"
 #include "chain.h"
 #include "continuation.h"
 #include "event.h"
