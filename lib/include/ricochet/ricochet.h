@@ -12,6 +12,7 @@
 #include "event.h"
 #include "family.h"
 #include "flow.h"
+#include "grazing.h"
 #include "grazing_criterion.h"
 #include "grazing_map.h"
 #include "impact_modes.h"

@@ -1,0 +1,34 @@
+/* A section through a grazing motion, for the files that share it: internal to the room. */
+#ifndef RICOCHET_SECTION_H
+#define RICOCHET_SECTION_H
+
+#include "grazing_parts.h"
+
+typedef struct section {
+  const ric_grazing *g;
+  const ric_family *f;
+  bool forced;
+  size_t numbers, state, size; /* n + m; with time; of the coordinates */
+  double time, touch;          /* on it; of the touch after that */
+  double *normal;              /* [state] of length 1 */
+  double *rates;               /* [state] F there, and 1 */
+  double *basis;               /* [size][state] */
+  double *matrix;              /* [numbers][numbers] derivative of the state */
+  double *x, *from, *goes;     /* [numbers], [state], [state] */
+  double *block;
+} section;
+
+/** Makes the section, and L, eta, xi and the stretch of the map on it.
+ *  @returns as ric_grazing_section; to be closed in any case */
+ric_status section_open(section *section, ric_family *family, const ric_grazing *grazing,
+                        const ric_grazing_plane *plane, ric_grazing_map *map, ric_error *error);
+void section_close(section *section);
+
+/** Coordinates [size] of what is left of a difference [state] of the motion a period later when it is moved along the
+ *  flow onto the section. */
+void section_project(const section *section, const double *difference, double *z);
+
+/** The map's kappa; `matrix` still is the derivative from the touch to the section. */
+ric_status section_second(const section *section, ric_grazing_map *map, ric_error *error);
+
+#endif
