@@ -176,7 +176,65 @@ static void the_map_is_the_motion_to_third_order(void **state) {
   }
 }
 
+/* --- windows
+ * ------------------------------------------------------------------------------------------------------------ */
+
+enum { TRANSIENT = 4000, LONGEST = 40 };
+
+/* Smallest number of forcing periods after which the settled motion at a force is where it was; 0: none up to the
+ * longest. */
+static size_t period_of(driven *d, const double *begin, double force) {
+  const double period = two_pi / d->frequency;
+  double given, seen[LONGEST + 1];
+  ric_trajectory *t = NULL;
+  ric_run run;
+  assert_int_equal(set_force(d->system, &force, &given, d, NULL), RIC_OK);
+  assert_int_equal(ric_trajectory_create(d->system, NULL, &t, NULL), RIC_OK);
+  assert_int_equal(ric_trajectory_start(t, 0, begin, begin + 1, NULL), RIC_OK);
+  for (int k = 0; k <= TRANSIENT + LONGEST; k++) {
+    assert_int_equal(ric_trajectory_run(t, k * period, NULL, &run, NULL), RIC_OK);
+    assert_int_equal(run.outcome, RIC_RUN_COMPLETED);
+    if (k >= TRANSIENT)
+      seen[k - TRANSIENT] = ric_trajectory_u(t)[0];
+  }
+  ric_trajectory_destroy(&t);
+  for (size_t n = 1; n <= LONGEST; n++)
+    if (fabs(seen[n] - seen[0]) < 1e-9)
+      return n;
+  return 0;
+}
+
+/* x'' + 3 x' + x = a cos 4t before a wall: lambda = 0.549, windows of rising periods. In the middle of the map's window
+ * the motion has its period; halfway, in ln d, to the next one none of them. */
+static void windows_of_the_map_are_those_of_the_motion(void **state) {
+  (void)state;
+  driven d = {.name = "overdamped", .frequency = 4, .wall = 1, .low = 1, .high = 60};
+  make_lattice(&d, 1, 0, 0);
+  d.lattice.on_site.damping = 3;
+  ric_obstacle wall = ric_obstacle_wall(0, 1);
+  wall.restitution = 0.8;
+  assert_int_equal(ric_system_set_obstacles(d.system, &wall, 1, NULL), RIC_OK);
+  grazing_case k = graze(&d);
+  ric_grazing_window w, next;
+  for (size_t n = 7; n <= 12; n++) {
+    assert_int_equal(ric_grazing_window_find(&k.map, n, &w, NULL), RIC_OK);
+    assert_int_equal(ric_grazing_window_find(&k.map, n + 1, &next, NULL), RIC_OK);
+    assert_true(w.exists && next.exists);
+    const double middle = sqrt(w.low.d * w.high.d), between = sqrt(w.low.d * next.high.d);
+    const double in = k.grazing.parameter - middle / k.grazing.slope;
+    const double out = k.grazing.parameter - between / k.grazing.slope;
+    assert_int_equal(period_of(&d, k.grazing.z, in), n);
+    const size_t beside = period_of(&d, k.grazing.z, out);
+    print_message("[ window %zu: mu %.6g to %.6g; between it and the next: period %zu ]\n", n,
+                  -w.low.d / k.grazing.slope / k.grazing.parameter, -w.high.d / k.grazing.slope / k.grazing.parameter,
+                  beside);
+    assert_true(beside != n && beside != n + 1);
+  }
+  clear(&k);
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(the_map_is_the_motion_to_third_order)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(the_map_is_the_motion_to_third_order),
+                                     cmocka_unit_test(windows_of_the_map_are_those_of_the_motion)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
