@@ -3,20 +3,9 @@
 #include "support.h"
 
 ric_grazing_map empty_map(size_t n) {
-  ric_grazing_map map = {.size = n, .stretch = 1};
-  map.L = calloc(n * n, sizeof *map.L);
-  map.eta = calloc(n, sizeof *map.eta);
-  map.xi = calloc(n, sizeof *map.xi);
-  map.kappa = calloc(n, sizeof *map.kappa);
-  assert_true(map.L && map.eta && map.xi && map.kappa);
+  ric_grazing_map map;
+  assert_int_equal(ric_grazing_map_init(&map, n, NULL), RIC_OK);
   return map;
-}
-
-void free_map(ric_grazing_map *map) {
-  free(map->L);
-  free(map->eta);
-  free(map->xi);
-  free(map->kappa);
 }
 
 ric_grazing_map map_of(size_t n, const double *L, const double *eta, const double *xi) {
@@ -34,10 +23,6 @@ ric_grazing_map diagonal_map(size_t n, const double *multipliers, const double *
   memcpy(map.eta, eta, n * sizeof *eta);
   memcpy(map.xi, xi, n * sizeof *xi);
   return map;
-}
-
-ric_grazing_map example(double lambda, double omega) {
-  return map_of(3, (double[]){lambda, 0, 0, 0, 0, -omega, 0, omega, 0}, (double[]){1, 0, 0}, (double[]){1, 1, 1});
 }
 
 /* c = a b of size n x n. */
@@ -117,6 +102,6 @@ ric_grazing_criterion find(const ric_grazing_map *map) {
 
 ric_grazing_criterion find_once(ric_grazing_map map) {
   ric_grazing_criterion c = find(&map);
-  free_map(&map);
+  ric_grazing_map_clear(&map);
   return c;
 }

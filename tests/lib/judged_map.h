@@ -8,14 +8,10 @@
 
 enum { most_size = 8 };
 
-/** Maps of size n, freed by free_map: zero, with these numbers, and with a diagonal L. */
+/** Maps of size n, for ric_grazing_map_clear: zero, with these numbers, and with a diagonal L. */
 ric_grazing_map empty_map(size_t n);
 ric_grazing_map map_of(size_t n, const double *L, const double *eta, const double *xi);
 ric_grazing_map diagonal_map(size_t n, const double *multipliers, const double *eta, const double *xi);
-void free_map(ric_grazing_map *map);
-
-/** (6.2)-(6.5) of [FN97]. */
-ric_grazing_map example(double lambda, double omega);
 
 /** L -> S L S^-1, eta -> eta S^-1, xi -> S xi for S [n][n], n <= most_size. */
 void change_coordinates(ric_grazing_map *map, const double *S);

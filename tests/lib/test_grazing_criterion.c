@@ -1,6 +1,7 @@
 /* The criterion of grazing bifurcations: signs of all coefficients eta L^i xi from finitely many. */
 #include "support.h"
 
+#include "grazing_maps.h"
 #include "judged_map.h"
 #include "scenario/random_source.h"
 
@@ -42,7 +43,7 @@ static brute_signs brute(const ric_grazing_map *map) {
 }
 
 /* Entries from [low, 1), rows of L divided by their number so that it contracts. */
-static ric_grazing_map random_map(random_source *source, size_t n, double low) {
+static ric_grazing_map any_map(random_source *source, size_t n, double low) {
   ric_grazing_map map = empty_map(n);
   for (size_t i = 0; i < n * n; i++)
     map.L[i] = random_uniform(source, low, 1) / (double)n;
@@ -64,7 +65,7 @@ static void example_of_the_source_is_continuous(void **state) {
                {0.25, 0.1, RIC_REGIME_BORDER},       {2.0 / 3, 0.3, RIC_REGIME_BORDER}, {0.26, 0.2, RIC_REGIME_WINDOWS},
                {0.6666, -0.6665, RIC_REGIME_WINDOWS}};
   for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
-    ric_grazing_map map = example(cases[k].lambda, cases[k].omega);
+    ric_grazing_map map = example_map(cases[k].lambda, cases[k].omega);
     double coefficients[50], departure[3] = {0};
     ric_grazing_criterion c;
     assert_int_equal(ric_grazing_criterion_find(&map, NULL, &c, coefficients, 50, departure, NULL), RIC_OK);
@@ -77,7 +78,7 @@ static void example_of_the_source_is_continuous(void **state) {
     assert_true(isnan(departure[0]) && isnan(departure[1]) && isnan(departure[2]));
     for (size_t i = 0; i < 50; i++)
       assert_close(coefficients[i] / pow(cases[k].lambda, (double)i), 1, 1e-13);
-    free_map(&map);
+    ric_grazing_map_clear(&map);
   }
 }
 
@@ -108,7 +109,7 @@ static void coefficients_of_an_oscillator_have_a_closed_form(void **state) {
       double expected = 1.8 * displacement(cases[k][0], 2 * pi / cases[k][1] * (double)(i + 1));
       assert_close(coefficients[i], expected, 1e-14 + 1e-11 * fabs(expected));
     }
-    free_map(&map);
+    ric_grazing_map_clear(&map);
   }
 }
 
@@ -143,7 +144,7 @@ static void underdamped_oscillators_fail(void **state) {
   double x[2] = {map.L[1] * map.xi[1], map.L[3] * map.xi[1]}, length = hypot(x[0], x[1]);
   assert_close(departure[0], x[0] / length, 1e-14);
   assert_close(departure[1], x[1] / length, 1e-14);
-  free_map(&map);
+  ric_grazing_map_clear(&map);
 }
 
 /* --- invariance --------------------------------------------------------------------------------------------------- */
@@ -164,7 +165,7 @@ static void coordinates_do_not_matter(void **state) {
   double S[most_size * most_size];
   for (size_t trial = 0; trial < 400; trial++) {
     size_t n = 1 + random_below(&source, most_size);
-    ric_grazing_map map = random_map(&source, n, trial % 2 ? 0 : -0.4);
+    ric_grazing_map map = any_map(&source, n, trial % 2 ? 0 : -0.4);
     if (brute(&map).closest > 1e-4) {
       ric_grazing_criterion before = find(&map);
       random_coordinates(&source, trial % 4 < 2 ? 0 : 6, n, S);
@@ -172,7 +173,7 @@ static void coordinates_do_not_matter(void **state) {
       ric_grazing_criterion after = find(&map);
       assert_same(&before, &after);
     }
-    free_map(&map);
+    ric_grazing_map_clear(&map);
   }
 }
 
@@ -183,7 +184,7 @@ static void sections_do_not_matter(void **state) {
   double a[20], b[20], row[most_size], column[most_size];
   for (size_t trial = 0; trial < 100; trial++) {
     size_t n = 1 + random_below(&source, most_size);
-    ric_grazing_map map = random_map(&source, n, trial % 2 ? 0 : -0.2), other = map_of(n, map.L, map.eta, map.xi);
+    ric_grazing_map map = any_map(&source, n, trial % 2 ? 0 : -0.2), other = map_of(n, map.L, map.eta, map.xi);
     ric_grazing_criterion of_map, of_other;
     for (size_t i = 0; i < n; i++) {
       row[i] = column[i] = 0;
@@ -200,8 +201,8 @@ static void sections_do_not_matter(void **state) {
       assert_close(a[i], b[i], 1e-14 * (double)n);
     if (brute(&map).closest > 1e-4)
       assert_same(&of_map, &of_other);
-    free_map(&map);
-    free_map(&other);
+    ric_grazing_map_clear(&map);
+    ric_grazing_map_clear(&other);
   }
 }
 
@@ -233,14 +234,14 @@ static void verdicts_agree_with_brute_force(void **state) {
   size_t seen[RIC_GRAZING_VERDICTS] = {0};
   for (size_t trial = 0; trial < 2000; trial++) {
     size_t n = 1 + trial % most_size;
-    ric_grazing_map map = random_map(&source, n, random_uniform(&source, -0.8, 0.1));
+    ric_grazing_map map = any_map(&source, n, random_uniform(&source, -0.8, 0.1));
     brute_signs signs = brute(&map);
     ric_grazing_criterion c = find(&map);
     if (signs.closest > 1e-7) {
       seen[c.verdict]++;
       assert_int_equal(c.first_negative, signs.first_negative);
     }
-    free_map(&map);
+    ric_grazing_map_clear(&map);
   }
   assert_true(seen[RIC_GRAZING_CONTINUOUS] > 400 && seen[RIC_GRAZING_DISCONTINUOUS] > 400);
   assert_int_equal(seen[RIC_GRAZING_UNDECIDED], 0);
@@ -251,7 +252,7 @@ static void positive_maps_are_continuous(void **state) {
   (void)state;
   random_source source = {14};
   for (size_t trial = 0; trial < 200; trial++) {
-    ric_grazing_criterion c = find_once(random_map(&source, 1 + trial % most_size, 1e-3));
+    ric_grazing_criterion c = find_once(any_map(&source, 1 + trial % most_size, 1e-3));
     assert_int_equal(c.verdict, RIC_GRAZING_CONTINUOUS);
     assert_true(c.alpha > 0 && c.dominant.re > c.second);
   }
@@ -289,7 +290,7 @@ static void defective_rest_is_proved(void **state) {
   assert_in_range(c.settled, 140, 400);
   for (size_t i = c.settled; i < looked_at; i++)
     assert_true(fabs(coefficients[i] / pow(0.9, (double)i) - c.alpha) < c.alpha);
-  free_map(&map);
+  ric_grazing_map_clear(&map);
 }
 
 static void late_negative_coefficients_are_found(void **state) {

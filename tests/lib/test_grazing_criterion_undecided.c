@@ -1,6 +1,7 @@
 /* The criterion where it gives no answer or refuses, and what it predicts of windows. */
 #include "support.h"
 
+#include "grazing_maps.h"
 #include "judged_map.h"
 #include "scenario/random_source.h"
 
@@ -114,7 +115,7 @@ static void tails_longer_than_allowed_are_undecided(void **state) {
   assert_int_equal(ric_grazing_criterion_find(&map, &options, &c, NULL, 0, NULL, NULL), RIC_OK);
   assert_int_equal(c.verdict, RIC_GRAZING_UNDECIDED);
   assert_non_null(strstr(c.reason, "may outweigh"));
-  free_map(&map);
+  ric_grazing_map_clear(&map);
 }
 
 /* --- refusals, names, windows ------------------------------------------------------------------------------------- */
@@ -122,7 +123,7 @@ static void tails_longer_than_allowed_are_undecided(void **state) {
 static void bad_arguments_are_refused(void **state) {
   (void)state;
   const double bad[] = {-1e-9, 1, NAN, INFINITY};
-  ric_grazing_map map = example(0.5, 0.3);
+  ric_grazing_map map = example_map(0.5, 0.3);
   ric_grazing_criterion c = {.settled = 77};
   ric_grazing_criterion_options options;
   ric_error error;
@@ -150,7 +151,7 @@ static void bad_arguments_are_refused(void **state) {
   map.eta[0] = 0;
   assert_int_equal(ric_grazing_criterion_find(&map, NULL, &c, NULL, 0, NULL, &error), RIC_EINVAL);
   assert_int_equal(c.settled, 77);
-  free_map(&map);
+  ric_grazing_map_clear(&map);
 }
 
 static void verdicts_and_regimes_have_names(void **state) {
@@ -188,7 +189,7 @@ static void windows_are_predicted_for_continuous_bifurcations_only(void **state)
   double border = 7, flip = 7;
   ric_error error;
   ric_grazing_criterion c = find_once(diagonal_map(1, (double[]){-0.5}, (double[]){1}, (double[]){1})),
-                        good = find_once(example(0.5, 0.3));
+                        good = find_once(example_map(0.5, 0.3));
   assert_int_equal(ric_grazing_predict_window(&c, 1, 4, &border, &flip, &error), RIC_EINVAL);
   assert_non_null(strstr(error.message, "discontinuous"));
   assert_int_equal(ric_grazing_predict_window(&good, 1, 1, &border, &flip, &error), RIC_EINVAL);
