@@ -1,7 +1,7 @@
 /* The return map with all its coefficients against event-driven runs over a period: forced motions of a linear
- * oscillator, a nonlinear chain of five masses and a double pendulum, whose impacts act through a mass matrix that
- * depends on the place and whose gap is curved. What the map leaves out is of third order in the root of the
- * penetration. */
+ * oscillator, a nonlinear chain of five masses, a system with full M, C and K, and a double pendulum, whose impacts act
+ * through a mass matrix that depends on the place and whose gap is curved. What the map leaves out is of third order in
+ * the root of the penetration. */
 #include "support.h"
 
 #include <ricochet/ricochet.h>
@@ -19,6 +19,7 @@ typedef struct driven {
   const char *name;
   ric_system *system;
   ric_lattice lattice;
+  ric_mck mck; /* of one without lattice */
   ric_spring links[MASSES + 1];
   double force[MASSES], frequency, wall;
   double low, high; /* the force sets out from `low` */
@@ -28,6 +29,8 @@ static ric_status set_force(ric_system *system, const double *p, double *given, 
   driven *d = user;
   d->force[0] = p[0];
   *given = two_pi / d->frequency;
+  if (d->mck.coordinates > 0)
+    return ric_system_set_mck(system, &d->mck, error);
   return d->lattice.particles > 0 ? ric_system_set_lattice(system, &d->lattice, error) : RIC_OK;
 }
 
@@ -46,6 +49,22 @@ static void make_lattice(driven *d, size_t n, size_t wall, double cubic) {
   for (size_t i = 0; i <= n && n > 1; i++)
     d->links[i] = (ric_spring){1 + 0.1 * (double)i, 0, cubic, 0.3};
   assert_int_equal(ric_system_create_lattice(&d->lattice, &obstacle, 1, &d->system, NULL), RIC_OK);
+}
+
+/* Three coordinates with a mass matrix that couples all of them, and gyroscopic forces. */
+static void make_mck(driven *d) {
+  static const double mass[9] = {2, 0.3, 0.2, 0.3, 1.5, 0.4, 0.2, 0.4, 1};
+  static const double damping[9] = {0.6, 0.5, 0, -0.5, 0.7, 0.1, 0, 0.1, 0.5};
+  static const double stiffness[9] = {3, -1, 0, -1, 2.5, -0.5, 0, -0.5, 1.4};
+  ric_obstacle floor = ric_obstacle_floor(2, -d->wall);
+  floor.restitution = 0.7;
+  d->mck = (ric_mck){.coordinates = 3,
+                     .mass = {.values = mass},
+                     .damping = {.values = damping},
+                     .stiffness = {.values = stiffness},
+                     .frequency = d->frequency,
+                     .force_cos = d->force};
+  assert_int_equal(ric_system_create_mck(&d->mck, &floor, 1, &d->system, NULL), RIC_OK);
 }
 
 static int pendulum_force(double t, const double *q, const double *u, double *f, void *user) {
@@ -159,10 +178,12 @@ static void the_map_is_the_motion_to_third_order(void **state) {
   (void)state;
   driven all[] = {{.name = "oscillator", .frequency = 1.7, .wall = 1, .low = 0.1, .high = 20},
                   {.name = "five masses", .frequency = 1.3, .wall = 0.6, .low = 0.1, .high = 20},
+                  {.name = "full M, C, K", .frequency = 1.6, .wall = 0.3, .low = 0.1, .high = 20},
                   {.name = "double pendulum", .frequency = 1.2, .wall = 0.5, .low = 0.05, .high = 5}};
   make_lattice(&all[0], 1, 0, 0);
   make_lattice(&all[1], MASSES, 2, 0.3);
-  make_pendulum(&all[2]);
+  make_mck(&all[2]);
+  make_pendulum(&all[3]);
   for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
     grazing_case k = graze(&all[i]);
     double errors[4];
