@@ -23,7 +23,8 @@ static ric_status begins(const piece_run *run, void *user, ric_error *error) {
     return RIC_OK;
   p->first = run->begin;
   memcpy(p->q, p->s->x, n * sizeof *p->q);
-  memcpy(p->v, p->s->x + n, p->s->arcs.speeds * sizeof *p->v);
+  if (p->s->arcs.speeds > 0) /* v may be NULL */
+    memcpy(p->v, p->s->x + n, p->s->arcs.speeds * sizeof *p->v);
   return RIC_OK;
 }
 

@@ -125,7 +125,7 @@ RIC_API ric_status ric_shooting_amplitude(ric_shooting *shooting, const double *
 /** States of a solution at equal distances in time, t_k = t_0 + k T / (count - 1), with t_0 that of the first state:
  * over a whole period. At an impact the state before it; NaN where arcs of an inadmissible motion run backwards.
  *  @param count  >= 2
- *  @param q, v  [count][n], [count][m]
+ *  @param q, v  [count][n], [count][m]; v may be NULL where m = 0
  *  @returns RIC_EINVAL; as ric_shooting_residual. */
 RIC_API ric_status ric_shooting_states(ric_shooting *shooting, const double *z, double given, size_t count, double *q,
                                        double *v, ric_error *error);
