@@ -77,7 +77,9 @@ def names_of(dataset):
     if kinds is None:
         raise FigureError(f"{dataset.name} is no enum")
     name = {value: key for key, value in kinds.items()}
-    return np.array([name.get(value, "unknown") for value in dataset[()].tolist()], dtype=object)
+    values = dataset[()]
+    words = [name.get(value, "unknown") for value in values.ravel().tolist()]
+    return np.array(words, dtype=object).reshape(values.shape)
 
 
 def text_of(value):

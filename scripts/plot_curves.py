@@ -61,16 +61,21 @@ class Curves(Branches):
         word = self.study.word(key)
         return as_number(word) if word or self.study.items(key) else default
 
-    def subtitle(self):
+    def fixed(self):
+        """What the study holds fixed, in words."""
         varied = [self.followed, self.second, *self.names]
         alone = self.study.word("particles") == "1"
         parts = figures.fixed_parameters(self.study, self.study.word("particles") or "?", varied)
         parts = parts[:1] if alone else parts  # a particle alone has no coupling
+        told = ("floor", "wall") if self.study.in_series else ()
         for key, words in (("floor", "floor at"), ("wall", "wall at"), ("restitution",) * 2, ("damping",) * 2):
-            if as_number(self.study.word(key)) is not None and f"model.{key}" not in varied:
+            if key not in told and as_number(self.study.word(key)) is not None and f"model.{key}" not in varied:
                 parts.append(f"{words} {self.study.word(key)}")
+        return parts
+
+    def subtitle(self):
         several = ["later tasks darker"] if len(self.tasks) > 1 else []
-        return ", ".join(parts + several + ["all quantities dimensionless"])
+        return ", ".join(self.fixed() + several + ["all quantities dimensionless"])
 
 
 # --- the closed form of grazing ---
