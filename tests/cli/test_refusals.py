@@ -263,7 +263,7 @@ def studies_over_8_MiB_are_refused(ricochet, folder):
 @test
 def what_later_versions_bring_is_refused_by_name(ricochet, folder):
     later = "not in this version"
-    kinds = ("grazing", "diagram", "atlas", "basin")
+    kinds = ("diagram", "atlas", "basin")
     cases = [
         *(("kind: orbits", f"kind: {kind}", 1, f"kind = {kind}", later, "orbits") for kind in kinds),
         ("type: chain", "type: oscillator", 4, "model.type = oscillator", later, "chain"),

@@ -23,7 +23,7 @@ static void later_versions_are_refused_by_name(void **state) {
   (void)state;
   static const refusal cases[] = {
       {"kind: orbits", "kind: basin",
-       "s.yaml:1: ", "kind = basin is not in this version, expected one of orbits, trajectory, branch", NULL},
+       "s.yaml:1: ", "kind = basin is not in this version, expected one of orbits, trajectory, branch, grazing", NULL},
       {"type: chain", "type: oscillator",
        "s.yaml:4: ", "model.type = oscillator is not in this version, expected one of chain", NULL},
       {"type: chain", "mass: 3\n  type: grazing_map", "s.yaml:5: ", "model.type = grazing_map is not in this version",
@@ -115,7 +115,7 @@ static void patterns_that_no_chain_has_are_refused(void **state) {
 static void missing_keys_are_named_with_what_they_allow(void **state) {
   (void)state;
   static const refusal cases[] = {
-      {"kind: orbits\n", "", "s.yaml: ", "missing key kind (one of orbits, trajectory, branch)", NULL},
+      {"kind: orbits\n", "", "s.yaml: ", "missing key kind (one of orbits, trajectory, branch, grazing)", NULL},
       {"  type: chain\n", "", "s.yaml: ", "missing key model.type (one of chain, duffing_chain)", NULL},
       {"  particles: 30\n", "", "s.yaml: ", "missing key model.particles (an integer from 1 to 1000000000)", NULL},
       {"  period: 1.5 pi\n", "", "s.yaml: ", "missing key orbit.period (a number > 0)", NULL},

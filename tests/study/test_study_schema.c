@@ -51,6 +51,8 @@ static void mistyped_names_find_the_nearest_key(void **state) {
                                          {"branch.form", "branch.from"},
                                          {"branch.trce", "branch.trace"},
                                          {"branch.trace.hihg", "branch.trace.high"},
+                                         {"grazign", "grazing"},
+                                         {"grazing.sectoin", "grazing.section"},
                                          {"orbit.special_point", "orbit.special_points"},
                                          {"model.zzz", ""},
                                          {"", ""},
@@ -92,7 +94,7 @@ static void assert_allowed(study_key key, const char *expected) {
 
 static void allowed_values_are_said_in_words(void **state) {
   (void)state;
-  assert_allowed(KEY_KIND, "one of orbits, trajectory, branch");
+  assert_allowed(KEY_KIND, "one of orbits, trajectory, branch, grazing");
   assert_allowed(KEY_TITLE, "text");
   assert_allowed(KEY_MODEL_PARTICLES, "an integer from 1 to 1000000000");
   assert_allowed(KEY_MODEL_ENDS, "one of periodic, fixed, free");

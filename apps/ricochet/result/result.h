@@ -74,9 +74,9 @@ int result_study_digest(const char *path, uint64_t *digest, message *why);
 /* What `show` prints on standard output, on this process alone, without MPI_Init. @returns 0; EXIT_FILES when the file
  * is damaged or not ours, or the output cannot be written. */
 
-/** Prints what is in the file: creator, study title, sweeps with their ranges, every group with its data sets (type,
- *  shape, units, long name), counts of every enum column, and up to 40 rows of tables that have no row per task, such
- * as special points. */
+/** Prints what is in the file: creator, study title, sweeps with their ranges, cards of grazing motions, every group
+ * with its data sets (type, shape, units, long name), counts of every enum column, and up to 40 rows of tables that
+ * have no row per task, such as special points. */
 int result_show(const char *path, message *why);
 
 /** Prints a group as CSV (RFC 4180, numbers to 17 digits, enums by name, a row of names first): the swept parameters

@@ -1,4 +1,4 @@
-/* Studies of kind `branch`: what is followed, and how its keys fit together. */
+/* Studies that follow a family, of kinds `branch` and `grazing`: along what, and how its keys fit together. */
 #include <math.h>
 #include <string.h>
 
@@ -113,10 +113,22 @@ static int read_traced(study *s, const document *d, message *why) {
   return check_values(s, d, &s->followed, firsts, sizeof firsts / sizeof *firsts, why);
 }
 
-int branch_read(study *s, const document *d, message *why) {
-  if (!study_is_kind(s, "branch"))
+/* The return map beside grazing is that of motions which are solved for over a whole period. */
+static int check_symmetry(const study *s, const document *d, message *why) {
+  const source file = {.name = s->name};
+  const int node = check_node_of_key(s, KEY_ORBIT_MOTION);
+  static const char text[] = "orbit.motion = even, but kind: grazing needs forced, conservative or autonomous motions";
+  if (!study_is_kind(s, "grazing") || !motion_is(s, "even"))
     return 0;
-  const int code = read_followed(s, d, why);
+  return node ? document_refuse(d, node, why, "%s", text) : source_refuse(&file, 0, why, "%s", text);
+}
+
+int branch_read(study *s, const document *d, message *why) {
+  if (!study_follows(s))
+    return 0;
+  int code = check_symmetry(s, d, why);
+  if (!code)
+    code = read_followed(s, d, why);
   return code ? code : read_traced(s, d, why);
 }
 
@@ -449,8 +461,8 @@ static int check_guess(const study *s, const document *d, message *why) {
     return refuse_two_guesses(s, d, mode ? KEY_ORBIT_MODE : KEY_ORBIT_EXCITED, start, why);
   if (!start && !excited && !mode && !listed && !forced)
     return source_refuse(&file, 0, why,
-                         "kind: branch has no first guess, expected the section start, orbit.excited, orbit.mode%s",
-                         motion_is(s, "even") ? ", orbit.at_start or orbit.at_half" : "");
+                         "kind: %s has no first guess, expected the section start, orbit.excited, orbit.mode%s",
+                         study_kind(s), motion_is(s, "even") ? ", orbit.at_start or orbit.at_half" : "");
   return 0;
 }
 

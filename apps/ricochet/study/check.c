@@ -37,7 +37,7 @@ static bool has_orbit(const study *s, const document *d) {
 
 /* A branch whose period follows from its force, or whose guess is a normal mode, needs none. */
 static bool needs_period(const study *s, const document *d) {
-  if (!study_is_kind(s, "branch"))
+  if (!study_follows(s))
     return has_orbit(s, d);
   const bool forced = s->values[KEY_ORBIT_MOTION].text && strcmp(s->values[KEY_ORBIT_MOTION].text, "forced") == 0;
   return !forced && !branch_from_mode(s) && s->values[KEY_ORBIT_FORCING_PERIODS].numbers[0] == -INFINITY;
@@ -130,7 +130,7 @@ static int refuse_for_orbits(const study *s, const document *d, int node, study_
   char shown[32] = "null";
   if (value > -INFINITY)
     number_show(value, shown, sizeof shown);
-  if (study_is_kind(s, "branch"))
+  if (study_follows(s))
     return document_refuse(d, node, why, "%s = %s, but orbit.motion: %s needs %s = %s", label, shown,
                            s->values[KEY_ORBIT_MOTION].text, path, fallback);
   if (key == KEY_MODEL_RESTITUTION)
@@ -293,7 +293,7 @@ static int check_swept_impacts(const study *s, const document *d, message *why) 
 
 static int check_pattern(const study *s, const document *d, message *why) {
   const size_t most = s->values[KEY_ORBIT_AT_START].count + s->values[KEY_ORBIT_AT_HALF].count;
-  if (most == 0 && !study_is_kind(s, "branch")) {
+  if (most == 0 && !study_follows(s)) {
     char place[640];
     study_place(s, KEY_ORBIT_AT_START, place, sizeof place);
     return refuse(why, EXIT_USAGE, "%s and orbit.at_half are both empty, expected at least one particle that hits",
@@ -321,7 +321,7 @@ static int check_special_points(const study *s, const document *d, message *why)
 static int check_orbit(const study *s, const document *d, message *why) {
   if (study_restarts(s))
     return branch_check_restart(s, d, why);
-  if (study_is_kind(s, "branch")) {
+  if (study_follows(s)) {
     const int code = check_pattern(s, d, why);
     return code ? code : branch_check(s, d, why);
   }

@@ -82,6 +82,7 @@ void schema_nearest(const char *path, char *near, size_t size) {
     consider(&s, "branch");
     consider(&s, "branch.trace");
     consider(&s, "restart");
+    consider(&s, "grazing");
     consider(&s, "sweep");
   }
   finish(&s, near, size);

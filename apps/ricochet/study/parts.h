@@ -40,7 +40,7 @@ int sweep_value_node(const document *d, const sweep_entry *e, size_t i);
 /** Whether the study is of a kind. */
 bool study_is_kind(const study *s, const char *kind);
 
-/** Finds what a branch is followed along, where the study is one and says so, and gives an omitted key its first value;
+/** Finds what a family is followed along, where the study does and says so, and gives an omitted key its first value;
  *  and the second parameter of curves, where there are any. */
 int branch_read(study *s, const document *d, message *why);
 /** Checks the keys of a branch, and what they make of those of the orbit. */

@@ -90,6 +90,9 @@ typedef enum study_key {
   KEY_RESTART_TASK,
   KEY_RESTART_SPECIAL,
   KEY_RESTART_POINT,
+  KEY_GRAZING_SECTION,
+  KEY_GRAZING_COEFFICIENTS,
+  KEY_GRAZING_WINDOWS,
   KEY_COUNT
 } study_key;
 
@@ -143,8 +146,8 @@ typedef enum sweep_key {
 /** How a number meets the row of its key. */
 typedef enum schema_fit { FIT_OK, FIT_NOT_INTEGER, FIT_OUT_OF_RANGE } schema_fit;
 
-/** The row of a key; the table has KEY_COUNT rows. Those of the sections `branch` and `restart` stand in a
- *  file of their own. */
+/** The row of a key; the table has KEY_COUNT rows. Those of the sections `branch`, `restart` and
+ *  `grazing` stand in a file of their own. */
 const schema_entry *schema_row(study_key key);
 /** The row of a key of a sweep entry, its path "sweep.from". */
 const schema_entry *schema_sweep_row(sweep_key key);
@@ -153,7 +156,7 @@ const schema_entry *schema_sweep_row(sweep_key key);
 study_key schema_find(const char *path);
 
 /** Whether keys of the table stand under this name: `model`, `orbit`, `start`, `time`, `branch`, `branch.trace`,
- *  `restart`. */
+ *  `restart`, `grazing`. */
 bool schema_is_section(const char *name);
 /** Whether a top-level name belongs to a later version: `iterate`. */
 bool schema_is_later_section(const char *name);

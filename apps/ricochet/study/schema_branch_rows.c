@@ -1,9 +1,11 @@
-/* The schema table, sections `branch` and `restart`: how a family of periodic motions is followed along a parameter,
- * and where in an earlier result it starts. */
+/* The schema table, sections `branch`, `restart` and `grazing`: how a family of periodic motions is followed along a
+ * parameter, where in an earlier result it starts, and what is found where it grazes. */
 #include "schema_rows.h"
 
-#define OF_BRANCH .kinds = "branch"
-#define NUMBER    .type = VALUE_NUMBER, .scalar = true, .no_sweep = "it says how the branch is followed"
+#define OF_BRANCH  .kinds = "branch"
+#define OF_FAMILY  .kinds = "branch|grazing" /* of all kinds that follow a family */
+#define OF_GRAZING .kinds = "grazing"
+#define NUMBER     .type = VALUE_NUMBER, .scalar = true, .no_sweep = "it says how the branch is followed"
 
 static const schema_entry rows[KEY_COUNT - KEY_BRANCH_PARAMETER] = {
     [KEY_BRANCH_PARAMETER - KEY_BRANCH_PARAMETER] =
@@ -11,7 +13,7 @@ static const schema_entry rows[KEY_COUNT - KEY_BRANCH_PARAMETER] = {
          .type = VALUE_TEXT,
          .scalar = true,
          .required = true,
-         OF_BRANCH,
+         OF_FAMILY,
          .no_sweep = "it is text, not a number",
          .doc = "What the branch is followed along: a number of `model`, or an element of a list there, `orbit.period` "
                 "or `orbit.energy`. Where `branch.from` is given it may be left out of its section."},
@@ -20,7 +22,7 @@ static const schema_entry rows[KEY_COUNT - KEY_BRANCH_PARAMETER] = {
                                                 .null = true,
                                                 .fallback = "null",
                                                 ANY,
-                                                OF_BRANCH,
+                                                OF_FAMILY,
                                                 .doc =
                                                     "Value of the parameter at which the branch starts; null: the "
                                                     "study's own value of it, of orbit.energy without one the energy "
@@ -31,7 +33,7 @@ static const schema_entry rows[KEY_COUNT - KEY_BRANCH_PARAMETER] = {
          NUMBER,
          .required = true,
          ANY,
-         OF_BRANCH,
+         OF_FAMILY,
          .doc = "The branch sets out towards this value; from where `orbit.mode` touches an obstacle, to the side on "
                 "which the impact pushes. It ends where the parameter leaves its bounds."},
     [KEY_BRANCH_LOW - KEY_BRANCH_PARAMETER] = {.path = "branch.low",
@@ -39,7 +41,7 @@ static const schema_entry rows[KEY_COUNT - KEY_BRANCH_PARAMETER] = {
                                                .null = true,
                                                .fallback = "null",
                                                ANY,
-                                               OF_BRANCH,
+                                               OF_FAMILY,
                                                .doc = "Lower bound of the parameter; null: the smaller one of `from` "
                                                       "and `to`."},
     [KEY_BRANCH_HIGH - KEY_BRANCH_PARAMETER] = {.path = "branch.high",
@@ -47,14 +49,14 @@ static const schema_entry rows[KEY_COUNT - KEY_BRANCH_PARAMETER] = {
                                                 .null = true,
                                                 .fallback = "null",
                                                 ANY,
-                                                OF_BRANCH,
+                                                OF_FAMILY,
                                                 .doc = "Upper bound of the parameter; null: the larger one of `from` "
                                                        "and `to`."},
     [KEY_BRANCH_SCALE - KEY_BRANCH_PARAMETER] = {.path = "branch.scale",
                                                  WORD,
                                                  .fallback = "linear",
                                                  .words = "linear|log",
-                                                 OF_BRANCH,
+                                                 OF_FAMILY,
                                                  .doc = "`log`: steps are taken in the logarithm of the parameter, "
                                                         "whose bounds lie above 0."},
     [KEY_BRANCH_STEP - KEY_BRANCH_PARAMETER] =
@@ -65,7 +67,7 @@ static const schema_entry rows[KEY_COUNT - KEY_BRANCH_PARAMETER] = {
          .low = 0,
          .low_open = true,
          .high = INFINITY,
-         OF_BRANCH,
+         OF_FAMILY,
          .doc =
              "First step along the branch, in its arclength: the root of p^2 plus the mean square of the unknowns of "
              "the motion, with the parameter, or its logarithm, p; null: a fiftieth of the way from `from` to `to`."},
@@ -76,7 +78,7 @@ static const schema_entry rows[KEY_COUNT - KEY_BRANCH_PARAMETER] = {
                                                       .low = 0,
                                                       .low_open = true,
                                                       .high = INFINITY,
-                                                      OF_BRANCH,
+                                                      OF_FAMILY,
                                                       .doc = "Where steps would have to be shorter, the branch ends as "
                                                              "`not_converged`; null: a millionth of `step`."},
     [KEY_BRANCH_STEP_MOST - KEY_BRANCH_PARAMETER] =
@@ -87,13 +89,13 @@ static const schema_entry rows[KEY_COUNT - KEY_BRANCH_PARAMETER] = {
          .low = 0,
          .low_open = true,
          .high = INFINITY,
-         OF_BRANCH,
+         OF_FAMILY,
          .doc = "Longest step; null: a tenth of that way. Special points that come in pairs within one step are not "
                 "seen."},
     [KEY_BRANCH_NATURAL - KEY_BRANCH_PARAMETER] = {.path = "branch.natural",
                                                    FLAG,
                                                    .fallback = "false",
-                                                   OF_BRANCH,
+                                                   OF_FAMILY,
                                                    .doc =
                                                        "Steps in the parameter alone, which end at folds, instead of "
                                                        "by pseudo-arclength."},
@@ -104,7 +106,7 @@ static const schema_entry rows[KEY_COUNT - KEY_BRANCH_PARAMETER] = {
                                                   .low = 1,
                                                   .high = 1e7,
                                                   .no_sweep = "it says how the branch is followed",
-                                                  OF_BRANCH,
+                                                  OF_FAMILY,
                                                   .doc = "Most steps of a segment of the branch."},
     [KEY_BRANCH_TOLERANCE -
         KEY_BRANCH_PARAMETER] = {.path = "branch.tolerance",
@@ -113,7 +115,7 @@ static const schema_entry rows[KEY_COUNT - KEY_BRANCH_PARAMETER] = {
                                  .low = 0,
                                  .low_open = true,
                                  .high = 0.01,
-                                 OF_BRANCH,
+                                 OF_FAMILY,
                                  .doc = "Newton's method has converged when corrections are "
                                         "smaller than this, relative to 1 + the size of what is found."},
     [KEY_BRANCH_MULTIPLIERS - KEY_BRANCH_PARAMETER] =
@@ -170,7 +172,7 @@ static const schema_entry rows[KEY_COUNT - KEY_BRANCH_PARAMETER] = {
          .type = VALUE_TEXT,
          .scalar = true,
          .required = true,
-         OF_BRANCH,
+         OF_FAMILY,
          .no_sweep = "it is text, not a number",
          .doc = "With the section `branch.trace`, the special points of the branch are followed in two parameters, as "
                 "curves both ways; this is the second one, a number as `branch.parameter` names it. They begin at the "
@@ -179,13 +181,13 @@ static const schema_entry rows[KEY_COUNT - KEY_BRANCH_PARAMETER] = {
                                                      NUMBER,
                                                      .required = true,
                                                      ANY,
-                                                     OF_BRANCH,
+                                                     OF_FAMILY,
                                                      .doc = "Lower bound of the second parameter. Curves end there."},
     [KEY_BRANCH_TRACE_HIGH - KEY_BRANCH_PARAMETER] = {.path = "branch.trace.high",
                                                       NUMBER,
                                                       .required = true,
                                                       ANY,
-                                                      OF_BRANCH,
+                                                      OF_FAMILY,
                                                       .doc = "Upper bound of the second parameter."},
     [KEY_BRANCH_TRACE_FIRST_LOW -
         KEY_BRANCH_PARAMETER] = {.path = "branch.trace.first_low",
@@ -193,7 +195,7 @@ static const schema_entry rows[KEY_COUNT - KEY_BRANCH_PARAMETER] = {
                                  .null = true,
                                  .fallback = "null",
                                  ANY,
-                                 OF_BRANCH,
+                                 OF_FAMILY,
                                  .doc =
                                      "Curves end, too, where `branch.parameter` falls below this value; null: none."},
     [KEY_BRANCH_TRACE_FIRST_HIGH - KEY_BRANCH_PARAMETER] = {.path = "branch.trace.first_high",
@@ -201,7 +203,7 @@ static const schema_entry rows[KEY_COUNT - KEY_BRANCH_PARAMETER] = {
                                                             .null = true,
                                                             .fallback = "null",
                                                             ANY,
-                                                            OF_BRANCH,
+                                                            OF_FAMILY,
                                                             .doc = "The same where it rises above this value."},
     [KEY_BRANCH_TRACE_STEP - KEY_BRANCH_PARAMETER] =
         {.path = "branch.trace.step",
@@ -211,7 +213,7 @@ static const schema_entry rows[KEY_COUNT - KEY_BRANCH_PARAMETER] = {
          .low = 0,
          .low_open = true,
          .high = INFINITY,
-         OF_BRANCH,
+         OF_FAMILY,
          .doc = "First step along a curve, in its arclength: the root of p^2 plus the mean square of the unknowns, "
                 "which are those of the motion and the branch's parameter, with the second parameter p; null: a "
                 "hundredth of the way from `low` to `high`."},
@@ -222,7 +224,7 @@ static const schema_entry rows[KEY_COUNT - KEY_BRANCH_PARAMETER] = {
                                                            .low = 0,
                                                            .low_open = true,
                                                            .high = INFINITY,
-                                                           OF_BRANCH,
+                                                           OF_FAMILY,
                                                            .doc = "Longest step; null: a fiftieth of that way."},
     [KEY_BRANCH_TRACE_POINTS - KEY_BRANCH_PARAMETER] = {.path = "branch.trace.points",
                                                         .type = VALUE_INTEGER,
@@ -231,7 +233,7 @@ static const schema_entry rows[KEY_COUNT - KEY_BRANCH_PARAMETER] = {
                                                         .low = 1,
                                                         .high = 1e7,
                                                         .no_sweep = "it says how the branch is followed",
-                                                        OF_BRANCH,
+                                                        OF_FAMILY,
                                                         .doc = "Most steps of a curve, each way."},
     [KEY_BRANCH_TRACE_KINDS - KEY_BRANCH_PARAMETER] = {.path = "branch.trace.kinds",
                                                        .type = VALUE_WORD,
@@ -281,6 +283,42 @@ static const schema_entry rows[KEY_COUNT - KEY_BRANCH_PARAMETER] = {
                                                   .no_sweep = "it says where the branch starts",
                                                   .doc = "Which of its points, instead; they need `branch.states` "
                                                          "there."},
+    [KEY_GRAZING_SECTION - KEY_BRANCH_PARAMETER] =
+        {.path = "grazing.section",
+         .type = VALUE_NUMBER,
+         .scalar = true,
+         .fallback = "0",
+         .low = 0,
+         .high = 1,
+         .high_open = true,
+         OF_GRAZING,
+         .sweep = true,
+         .doc =
+             "Where on the motion the section of the return map lies, over the period: across time, stroboscopic, of "
+             "forced motions, across the flow of all others."},
+    [KEY_GRAZING_COEFFICIENTS - KEY_BRANCH_PARAMETER] =
+        {.path = "grazing.coefficients",
+         .type = VALUE_INTEGER,
+         .scalar = true,
+         .fallback = "24",
+         .low = 1,
+         .high = 64,
+         OF_GRAZING,
+         .no_sweep = "it changes the shape of the result",
+         .doc = "How many of the coefficients c_i of the criterion the result stores, from c_0 on; on curves of "
+                "`branch.trace`, whose changes of sign are located. The verdict looks at as many as it needs."},
+    [KEY_GRAZING_WINDOWS - KEY_BRANCH_PARAMETER] =
+        {.path = "grazing.windows",
+         .type = VALUE_INTEGER,
+         .scalar = true,
+         .fallback = "16",
+         .low = 0,
+         .high = 64,
+         OF_GRAZING,
+         .no_sweep = "it changes the shape of the result",
+         .doc =
+             "Longest period of the one-impact orbits of the map beyond grazing whose windows are found, from period "
+             "1 on; 0: none."},
 };
 
 const schema_entry *schema_branch_row(study_key key) {

@@ -1,4 +1,4 @@
-/* The schema table: every key of a study but those of the sections `branch` and `restart`. */
+/* The schema table: every key of a study but those of the sections `branch`, `restart` and `grazing`. */
 #include "schema_rows.h"
 
 #include "study.h"
@@ -14,11 +14,12 @@ static const schema_entry rows[KEY_BRANCH_PARAMETER] = {
     [KEY_KIND] = {.path = "kind",
                   WORD,
                   .required = true,
-                  .words = "orbits|trajectory|branch",
-                  .later_words = "grazing|diagram|atlas|basin",
+                  .words = "orbits|trajectory|branch|grazing",
+                  .later_words = "diagram|atlas|basin",
                   .doc = "What to compute. `orbits`: the periodic orbit of one impact pattern at every grid point; "
                          "`trajectory`: the motion from a state, or from such an orbit, at every grid point; `branch`: "
-                         "a family of periodic motions along a parameter, at every grid point of the others."},
+                         "a family of periodic motions along a parameter, at every grid point of the others; "
+                         "`grazing`: where such a family first touches an obstacle, and what follows there."},
     [KEY_TITLE] = {.path = "title",
                    .type = VALUE_TEXT,
                    .scalar = true,
@@ -222,7 +223,7 @@ static const schema_entry rows[KEY_BRANCH_PARAMETER] = {
     [KEY_ORBIT_MOTION] =
         {.path = "orbit.motion",
          WORD,
-         .kinds = "branch",
+         .kinds = "branch|grazing",
          .fallback = "even",
          .words = "even|forced|conservative|autonomous",
          .doc = "`even`: about t = 0 and T/2, of models without damping; `forced`: with the period of the force or a "
@@ -234,7 +235,7 @@ static const schema_entry rows[KEY_BRANCH_PARAMETER] = {
                           .null = true,
                           .fallback = "null",
                           ANY,
-                          .kinds = "branch",
+                          .kinds = "branch|grazing",
                           .sweep = true,
                           .doc = "Energy of an even or conservative motion, instead of its period; null: the period is "
                                  "given."},
@@ -245,7 +246,7 @@ static const schema_entry rows[KEY_BRANCH_PARAMETER] = {
                                    .fallback = "null",
                                    .low = 1,
                                    .high = 1e6,
-                                   .kinds = "branch",
+                                   .kinds = "branch|grazing",
                                    .sweep = true,
                                    .doc = "The period is this many of the model's force, instead of `orbit.period`; "
                                           "null: 1 for forced motions without `orbit.period`."},
@@ -255,7 +256,7 @@ static const schema_entry rows[KEY_BRANCH_PARAMETER] = {
                             .fallback = "[]",
                             .low = 0,
                             .high = INFINITY,
-                            .kinds = "branch",
+                            .kinds = "branch|grazing",
                             .sweep = true,
                             .doc =
                                 "Particles in the order in which they hit their floor, or their wall where they have "
@@ -265,7 +266,7 @@ static const schema_entry rows[KEY_BRANCH_PARAMETER] = {
                          .list = true,
                          .fallback = "[]",
                          ANY,
-                         .kinds = "branch",
+                         .kinds = "branch|grazing",
                          .sweep = true,
                          .doc = "First guess of the times of these impacts, rising."},
     [KEY_ORBIT_EXCITED] = {.path = "orbit.excited",
@@ -274,7 +275,7 @@ static const schema_entry rows[KEY_BRANCH_PARAMETER] = {
                            .fallback = "[]",
                            .low = 0,
                            .high = INFINITY,
-                           .kinds = "branch",
+                           .kinds = "branch|grazing",
                            .sweep = true,
                            .doc = "Particles that swing in the first guess of a motion without impacts: at t = 0 at "
                                   "the amplitude at which one alone, with its cubic spring, has the period T; the "
@@ -286,7 +287,7 @@ static const schema_entry rows[KEY_BRANCH_PARAMETER] = {
                         .fallback = "null",
                         .low = 0,
                         .high = INFINITY,
-                        .kinds = "branch",
+                        .kinds = "branch|grazing",
                         .sweep = true,
                         .doc =
                             "First guess of a motion whose energy is given: the normal mode of this place, from 0 in "
@@ -381,7 +382,7 @@ static const schema_entry rows[KEY_BRANCH_PARAMETER] = {
                      .per_particle = true,
                      .fallback = "0",
                      ANY,
-                     .kinds = "trajectory|branch",
+                     .kinds = "trajectory|branch|grazing",
                      .sweep = true,
                      .doc = "Displacements at t = 0, in a branch of the first guess, after the first impact of "
                             "`orbit.sequence`: one number for all, or one per particle."},
@@ -392,7 +393,7 @@ static const schema_entry rows[KEY_BRANCH_PARAMETER] = {
                      .per_particle = true,
                      .fallback = "0",
                      ANY,
-                     .kinds = "trajectory|branch",
+                     .kinds = "trajectory|branch|grazing",
                      .sweep = true,
                      .doc = "Velocities at t = 0, in a branch of the first guess, after the first impact of "
                             "`orbit.sequence`: one number for all, or one per particle."},

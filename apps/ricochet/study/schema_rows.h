@@ -10,7 +10,7 @@
 #define FLAG .type = VALUE_FLAG, .scalar = true, .no_sweep = "it is a flag, not a number"
 #define WORD .type = VALUE_WORD, .scalar = true, .no_sweep = "it is a word, not a number"
 
-/** The rows of the sections `branch` and `restart`, from KEY_BRANCH_PARAMETER on. */
+/** The rows of the sections `branch`, `restart` and `grazing`, from KEY_BRANCH_PARAMETER on. */
 const schema_entry *schema_branch_row(study_key key);
 
 #endif

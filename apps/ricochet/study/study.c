@@ -59,7 +59,7 @@ static int read_top(study *s, const document *d, const yaml_node_pair_t *pair, m
   if (schema_is_later_section(name))
     return document_refuse(d, pair->key, why,
                            "the section '%s' is not in this version, expected model, orbit, start, time, branch, "
-                           "restart and sweep",
+                           "restart, grazing and sweep",
                            name);
   const study_key key = schema_find(name);
   if (key != KEY_COUNT)
@@ -217,6 +217,10 @@ const char *study_text(const study *s) {
 uint64_t study_digest(const study *s) {
   return s->digest;
 }
+bool study_follows(const study *s) {
+  return study_is_kind(s, "branch") || study_is_kind(s, "grazing");
+}
+
 bool study_restarts(const study *s) {
   return study_is_kind(s, "branch") && s->values[KEY_RESTART_FILE].node != 0;
 }

@@ -91,7 +91,10 @@ const study_sweep *study_sweep_at(const study *s, size_t index);
 /** Number of grid points, the product over the sweeps; 1 without a sweep. Less than 2^40. */
 uint64_t study_tasks(const study *s);
 
-/** What a branch is followed along; of studies of kind `branch`. */
+/** Whether the study follows a family of motions along a parameter: kinds `branch` and `grazing`. */
+bool study_follows(const study *s);
+
+/** What it is followed along; of studies that do. */
 const study_parameter *study_followed(const study *s);
 
 /** The second parameter of curves through its special points; its key is KEY_COUNT where none are wanted. */

@@ -6,15 +6,11 @@
 #include <string.h>
 
 #include "branch_walk.h"
+#include "family_task.h"
 #include "machine.h"
-#include "trajectory.h"
 
 struct worker {
-  study_values *values;
-  ric_poll poll;
-  branch_family family;
-  branch_guess guess;
-  bool from_state;
+  family_task task;
 };
 
 /* --- before the tasks --- */
@@ -32,36 +28,18 @@ static int refuse_multipliers(const study *s, const study_values *v, message *wh
 static void branch_close(worker **w) {
   if (!w || !*w)
     return;
-  branch_guess_clear(&(*w)->guess);
-  branch_family_clear(&(*w)->family);
-  study_values_destroy(&(*w)->values);
+  family_task_clear(&(*w)->task);
   free(*w);
   *w = NULL;
 }
 
 static int branch_open(const study *s, ric_poll poll, worker **out, message *why) {
   worker *w = *out = calloc(1, sizeof *w);
-  if (w) {
-    w->poll = poll;
-    w->from_state = study_gives(s, KEY_START_Q) || study_gives(s, KEY_START_V);
-  }
-  if (w && (w->values = study_values_create(s)) && branch_family_init(&w->family, s, w->values) == 0 &&
-      branch_guess_init(&w->guess, (size_t)value_number(w->values, KEY_MODEL_PARTICLES, 0)) == 0)
-    return 0;
-  branch_close(out);
-  return refuse(why, EXIT_RUN, "%s: no memory for a task", study_name(s));
-}
-
-/* A study of one task says at once what would be its only row: that the library refuses it. */
-static int check_only_task(const study *s, message *why) {
-  worker *w = NULL;
-  ric_error error = {0};
-  if (study_tasks(s) != 1)
-    return 0;
-  int code = branch_open(s, (ric_poll){0}, &w, why);
-  if (!code && branch_family_open(&w->family, w->poll, &error) != RIC_OK)
-    code = refuse(why, error.status == RIC_ENOMEM ? EXIT_RUN : EXIT_USAGE, "%s: %s", study_name(s), error.message);
-  branch_close(&w);
+  if (!w)
+    return refuse(why, EXIT_RUN, "%s: no memory for a task", study_name(s));
+  const int code = family_task_init(&w->task, s, poll, why);
+  if (code)
+    branch_close(out);
   return code;
 }
 
@@ -71,13 +49,13 @@ static int branch_plan(const study *s, kind_plan *plan, message *why) {
     return refuse(why, EXIT_RUN, "%s: no memory for the values of a task", study_name(s));
   *plan = (kind_plan){.outcome = "outcome"};
   int code = refuse_multipliers(s, v, why);
-  plan->memory = branch_family_bytes(v) + TRAJECTORY_PARTICLE_BYTES * value_number(v, KEY_MODEL_PARTICLES, 0);
+  plan->memory = family_task_bytes(v);
   if (!code)
     code = machine_refuse_size(s, "a branch", plan->memory, why);
   if (!code)
     branch_lay_out(v, study_followed(s)->name, study_traced(s)->key == KEY_COUNT ? NULL : study_traced(s)->name, plan);
   study_values_destroy(&v);
-  return code ? code : check_only_task(s, why);
+  return code ? code : family_task_check(s, why);
 }
 
 /* --- a task --- */
@@ -93,25 +71,15 @@ static ric_status note_unborn(const kind_plan *plan, records *tails, ric_status 
   return branch_put_unborn(plan, tails, outcome, result->reason);
 }
 
-/* The first guess, and where the study does not say where its branch starts, the energy at which it does. */
-static ric_status begin(worker *w, ric_error *error) {
-  double energy = 0;
-  RIC_TRY(branch_guess_find(&w->guess, &w->family, w->from_state, error));
-  if (w->family.family)
-    return RIC_OK;
-  RIC_TRY(branch_guess_settle(&w->guess, &w->family, &energy, error));
-  return branch_family_begin(&w->family, energy, w->guess.rise, error);
-}
-
 static ric_status follow(worker *w, const kind_plan *plan, records *tails, branch_result *result) {
   ric_error error = {0};
-  ric_status status = branch_family_open(&w->family, w->poll, &error);
+  ric_status status = family_task_open(&w->task, &error);
   if (status != RIC_OK)
     return note_unborn(plan, tails, status, &error, BRANCH_REFUSED, result);
-  status = begin(w, &error);
+  status = family_task_begin(&w->task, &error);
   if (status != RIC_OK)
     return note_unborn(plan, tails, status, &error, BRANCH_FAILED_START, result);
-  return branch_walk(&w->family, &w->guess, plan, tails, result);
+  return branch_walk(&w->task.family, &w->task.guess, plan, tails, result);
 }
 
 static void fill_row(const branch_result *result, const table *t, unsigned char *row) {
@@ -129,9 +97,9 @@ static int branch_evaluate(worker *w, const kind_plan *plan, uint64_t task, unsi
   uint64_t before[BRANCH_TAILS_WITH_CURVES];
   for (size_t k = 0; k < plan->tail_count; k++)
     before[k] = tails[k].count;
-  study_values_at(w->values, task);
+  study_values_at(w->task.values, task);
   ric_status status = follow(w, plan, tails, &result);
-  branch_family_close(&w->family);
+  branch_family_close(&w->task.family);
   if (status == RIC_ESTOPPED)
     return -1;
   if (status != RIC_OK) { /* of a branch that does not fit, nothing is kept */

@@ -20,6 +20,9 @@ enum {
 /** Outcomes of a segment: how its curve ended, and that it never began. */
 enum { BRANCH_FAILED_START = RIC_CURVE_ENDS, BRANCH_REFUSED, BRANCH_OUTCOMES };
 
+/** Their words; also of the ends of curves in two parameters. */
+extern const char *const branch_outcome_names[BRANCH_OUTCOMES];
+
 /** Where a segment comes from; beyond the start, a special point of an earlier one. */
 typedef enum branch_origin {
   BRANCH_FROM_START,
@@ -46,14 +49,7 @@ void branch_put_point(const table *t, const ric_family_point *point, double valu
 void branch_put_special(const table *t, const ric_family_point *point, double value, double amplitude, size_t segment,
                         uint64_t before, long long particle, unsigned char *record);
 
-/** Writes a point of a curve into its record.
- *  @param special  special point of the task that the curve goes through
- *  @param part  of the curve
- *  @param value  of the parameter */
-void branch_put_curve_point(const table *t, const ric_family_curve_point *point, long long special, int part,
-                            double value, unsigned char *record);
-/** How a part of a curve ended. @param points  that it has */
-void branch_put_curve_end(const table *t, long long special, int part, int outcome, const char *reason, uint64_t points,
-                          unsigned char *record);
+/** Writes what is of this kind alone of a point of a curve into its record (curve_trace.h). */
+void branch_put_curve_point(const table *t, const ric_family_curve_point *point, unsigned char *record);
 
 #endif

@@ -3,9 +3,10 @@
 #include <math.h>
 #include <string.h>
 
+#include "curve_trace.h"
 #include "orbits.h"
 
-static const char *const outcome_names[BRANCH_OUTCOMES] = {
+const char *const branch_outcome_names[BRANCH_OUTCOMES] = {
 #define X(name, text) text,
     RIC_CURVE_END_LIST(X)
 #undef X
@@ -36,7 +37,7 @@ static const char *const side_names[] = {"floor", "wall"};
 
 /* The columns, in the order of the schema page. */
 static const column row_columns[] = {
-    {.name = "outcome", WORD(outcome_names), .long_name = "how the first segment ended", CURVE},
+    {.name = "outcome", WORD(branch_outcome_names), .long_name = "how the first segment ended", CURVE},
     {.name = "reason",
      .type = COLUMN_TEXT,
      .text_bytes = BRANCH_REASON_BYTES,
@@ -137,7 +138,7 @@ static const column segment_columns[] = {
      INTEGER,
      .long_name = "special point of the task at which it begins, -1 for the first one",
      CURVE},
-    {.name = "segment_outcome", WORD(outcome_names), .long_name = "how it ended", CURVE},
+    {.name = "segment_outcome", WORD(branch_outcome_names), .long_name = "how it ended", CURVE},
     {.name = "segment_reason",
      .type = COLUMN_TEXT,
      .text_bytes = BRANCH_REASON_BYTES,
@@ -152,14 +153,6 @@ static const column segment_columns[] = {
 };
 
 static const column curve_columns[] = {
-    {.name = "curve_special", INTEGER, .long_name = "special point of the task that the curve goes through", CURVE},
-    {.name = "curve_part",
-     INTEGER,
-     .long_name = "0: from there towards larger values of the second parameter, 1: towards smaller ones",
-     CURVE},
-    {.name = "curve_parameter", NUMBER, .long_name = "the key that is followed", CURVE},
-    {.name = "curve_second", NUMBER, .long_name = "the second key", CURVE},
-    {.name = "curve_period", NUMBER, .long_name = "period", CURVE},
     {.name = "curve_energy", NUMBER, .long_name = "energy, of motions with losses at their first state", CURVE},
     {.name = "curve_outcome",
      WORD(orbit_outcome_names),
@@ -168,44 +161,17 @@ static const column curve_columns[] = {
     {.name = "curve_iterations", INTEGER, .long_name = "corrections by Newton's method", .source = "count"},
 };
 
-static const column curve_end_columns[] = {
-    {.name = "curve_end_special", INTEGER, .long_name = "special point of the task that the curve goes through", CURVE},
-    {.name = "curve_end_part", INTEGER, .long_name = "part of the curve", CURVE},
-    {.name = "curve_end_outcome", WORD(outcome_names), .long_name = "how it ended", CURVE},
-    {.name = "curve_end_reason",
-     .type = COLUMN_TEXT,
-     .text_bytes = BRANCH_REASON_BYTES,
-     .units = "1",
-     .long_name = "why; empty when the outcome speaks for itself",
-     CURVE},
-    {.name = "curve_end_points", INTEGER, .long_name = "number of its points", .source = "count"},
-};
-
 #define COUNT(columns) (sizeof(columns) / sizeof *(columns))
-
-static void lay_out_tail(tail *to, const char *row_axis, const char *offset, const char *meaning, const column *columns,
-                         size_t count, const table_axis *axes, size_t axis_count) {
-  *to = (tail){.records = {.group = "branch", .row_axis = row_axis}, .offset = offset, .meaning = meaning};
-  table_add(&to->records, columns, count, axes, axis_count);
-  table_lay_out(&to->records);
-}
-
-static void put_name(table *t, const char *column_name, const char *followed) {
-  for (size_t i = 0; i < t->column_count; i++)
-    if (strcmp(t->columns[i].name, column_name) == 0)
-      t->columns[i].long_name = followed;
-}
 
 static void lay_out_curves(const char *followed, const char *traced, kind_plan *plan) {
   plan->tail_count = BRANCH_TAILS_WITH_CURVES;
-  lay_out_tail(&plan->tails[BRANCH_CURVES], "curve_row", "curve_offset",
-               "points of a task's curves: from its offset up to the next", curve_columns, COUNT(curve_columns), NULL,
-               0);
-  lay_out_tail(&plan->tails[BRANCH_CURVE_ENDS], "curve_end_row", "curve_end_offset",
-               "ends of a task's curves: from its offset up to the next", curve_end_columns, COUNT(curve_end_columns),
-               NULL, 0);
-  put_name(&plan->tails[BRANCH_CURVES].records, "curve_parameter", followed);
-  put_name(&plan->tails[BRANCH_CURVES].records, "curve_second", traced);
+  const curve_tables tables = {.group = "branch",
+                               .followed = followed,
+                               .traced = traced,
+                               .special = true,
+                               .own = curve_columns,
+                               .own_count = COUNT(curve_columns)};
+  curve_trace_lay_out(&tables, &plan->tails[BRANCH_CURVES], &plan->tails[BRANCH_CURVE_ENDS]);
 }
 
 void branch_lay_out(const study_values *v, const char *followed, const char *traced, kind_plan *plan) {
@@ -224,18 +190,20 @@ void branch_lay_out(const study_values *v, const char *followed, const char *tra
   table_add(&plan->rows, row_columns, COUNT(row_columns), NULL, 0);
   table_lay_out(&plan->rows);
   plan->tail_count = BRANCH_TAILS;
-  lay_out_tail(&plan->tails[BRANCH_POINTS], "point_row", "point_offset",
-               "points of a task: from its offset up to the next", point_columns, COUNT(point_columns), axes, count);
-  lay_out_tail(&plan->tails[BRANCH_SPECIAL], "special_row", "special_offset",
-               "special points of a task: from its offset up to the next", special_columns, COUNT(special_columns),
-               &state, 1);
-  lay_out_tail(&plan->tails[BRANCH_IMPACTS], "impact_row", "impact_offset",
-               "impacts of a task's motions: from its offset up to the next", impact_columns, COUNT(impact_columns),
-               NULL, 0);
-  lay_out_tail(&plan->tails[BRANCH_SEGMENTS], "segment_row", "segment_offset",
-               "segments of a task: from its offset up to the next", segment_columns, COUNT(segment_columns), NULL, 0);
-  put_name(&plan->tails[BRANCH_POINTS].records, "point_parameter", followed);
-  put_name(&plan->tails[BRANCH_SPECIAL].records, "special_parameter", followed);
+  kind_lay_out_tail(&plan->tails[BRANCH_POINTS], "branch", "point_row", "point_offset",
+                    "points of a task: from its offset up to the next", point_columns, COUNT(point_columns), axes,
+                    count);
+  kind_lay_out_tail(&plan->tails[BRANCH_SPECIAL], "branch", "special_row", "special_offset",
+                    "special points of a task: from its offset up to the next", special_columns, COUNT(special_columns),
+                    &state, 1);
+  kind_lay_out_tail(&plan->tails[BRANCH_IMPACTS], "branch", "impact_row", "impact_offset",
+                    "impacts of a task's motions: from its offset up to the next", impact_columns,
+                    COUNT(impact_columns), NULL, 0);
+  kind_lay_out_tail(&plan->tails[BRANCH_SEGMENTS], "branch", "segment_row", "segment_offset",
+                    "segments of a task: from its offset up to the next", segment_columns, COUNT(segment_columns), NULL,
+                    0);
+  table_put_long_name(&plan->tails[BRANCH_POINTS].records, "point_parameter", followed);
+  table_put_long_name(&plan->tails[BRANCH_SPECIAL].records, "special_parameter", followed);
   if (traced)
     lay_out_curves(followed, traced, plan);
 }
@@ -293,23 +261,8 @@ void branch_put_special(const table *t, const ric_family_point *point, double va
   row_put_numbers(record, table_column(t, "special_v"), o->v);
 }
 
-void branch_put_curve_point(const table *t, const ric_family_curve_point *point, long long special, int part,
-                            double value, unsigned char *record) {
-  row_put_integer(record, table_column(t, "curve_special"), special);
-  row_put_integer(record, table_column(t, "curve_part"), part);
-  row_put_number(record, table_column(t, "curve_parameter"), value);
-  row_put_number(record, table_column(t, "curve_second"), point->second);
-  row_put_number(record, table_column(t, "curve_period"), point->orbit->period);
+void branch_put_curve_point(const table *t, const ric_family_curve_point *point, unsigned char *record) {
   row_put_number(record, table_column(t, "curve_energy"), point->orbit->energy);
   row_put_word(record, table_column(t, "curve_outcome"), (int)point->orbit->outcome);
   row_put_integer(record, table_column(t, "curve_iterations"), point->iterations);
-}
-
-void branch_put_curve_end(const table *t, long long special, int part, int outcome, const char *reason, uint64_t points,
-                          unsigned char *record) {
-  row_put_integer(record, table_column(t, "curve_end_special"), special);
-  row_put_integer(record, table_column(t, "curve_end_part"), part);
-  row_put_word(record, table_column(t, "curve_end_outcome"), outcome);
-  row_put_text(record, table_column(t, "curve_end_reason"), reason);
-  row_put_integer(record, table_column(t, "curve_end_points"), (long long)points);
 }

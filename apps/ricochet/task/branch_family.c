@@ -104,6 +104,7 @@ int branch_family_init(branch_family *b, const study *s, study_values *v) {
                        .followed = study_followed(s),
                        .traced = study_traced(s)->key == KEY_COUNT ? NULL : study_traced(s),
                        .log = strcmp(value_word(v, KEY_BRANCH_SCALE), "log") == 0,
+                       .multipliers = strcmp(value_word(v, KEY_BRANCH_MULTIPLIERS), "false") != 0,
                        .hits = calloc(count_hits(v) + 1, sizeof *b->hits),
                        .times = calloc(value_count(v, KEY_ORBIT_TIMES) + 1, sizeof *b->times)};
   return b->hits && b->times ? lattice_model_init(&b->model, v) : -1;
@@ -184,7 +185,7 @@ static ric_family_options options_of(const branch_family *b, int rise) {
   const double from = value_number(v, KEY_BRANCH_FROM, 0), to = value_number(v, KEY_BRANCH_TO, 0);
   const double way = fabs(branch_family_parameter(b, to) - branch_family_parameter(b, from));
   ric_family_options o = ric_family_options_default();
-  o.multipliers = strcmp(value_word(v, KEY_BRANCH_MULTIPLIERS), "false") != 0;
+  o.multipliers = b->multipliers;
   o.curve.natural = value_flag(v, KEY_BRANCH_NATURAL);
   o.curve.p_low = bound(b, KEY_BRANCH_LOW, fmin(from, to));
   o.curve.p_high = bound(b, KEY_BRANCH_HIGH, fmax(from, to));

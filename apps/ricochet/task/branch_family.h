@@ -1,4 +1,4 @@
-/* The family of motions that a study of kind `branch` follows, for the values of one task. */
+/* The family of motions that a study follows, for the values of one task. */
 #ifndef RICOCHET_APP_BRANCH_FAMILY_H
 #define RICOCHET_APP_BRANCH_FAMILY_H
 
@@ -10,7 +10,8 @@ typedef struct branch_family {
   study_values *values;                     /* borrowed; what is followed moves in them */
   const study_parameter *followed, *traced; /* the second one is NULL without curves */
   ric_poll poll;
-  bool log; /* the curve's parameter is the logarithm */
+  bool log;         /* the curve's parameter is the logarithm */
+  bool multipliers; /* of its points are found: as the study says, or the caller before it opens the family */
   lattice_model model;
   ric_system *system;
   size_t *hits;  /* obstacles of orbit.at_start, at_half and sequence, one list after the other */

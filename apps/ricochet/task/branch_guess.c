@@ -190,3 +190,9 @@ ric_status branch_guess_settle(branch_guess *g, const branch_family *b, double *
   free(z);
   return status;
 }
+
+ric_status branch_guess_solve(const branch_guess *g, const branch_family *b, double *z, double *parameter,
+                              int *iterations, ric_error *error) {
+  *parameter = branch_family_parameter(b, value_number(b->values, KEY_BRANCH_FROM, 0));
+  return ric_family_start(b->family, *parameter, g->q, g->v, b->times, g->period, z, iterations, error);
+}

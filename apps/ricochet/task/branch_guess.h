@@ -29,4 +29,10 @@ ric_status branch_guess_find(branch_guess *g, const branch_family *b, bool from_
  *  @returns as ric_shooting_solve. */
 ric_status branch_guess_settle(branch_guess *g, const branch_family *b, double *energy, ric_error *error);
 
+/** Solves the equations of an open family for the motion at its start.
+ *  @param z  [unknowns], set  @param parameter  the family's own at the start, set  @param iterations  may be NULL
+ *  @returns as ric_family_start */
+ric_status branch_guess_solve(const branch_guess *g, const branch_family *b, double *z, double *parameter,
+                              int *iterations, ric_error *error);
+
 #endif

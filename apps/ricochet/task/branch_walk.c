@@ -282,13 +282,11 @@ static ric_status follow_all(walk *w, const branch_guess *guess, branch_result *
   segment *first = &w->segments[w->count++];
   ric_error error = {0};
   int iterations = 0;
-  const double from = branch_family_parameter(w->b, value_number(w->b->values, KEY_BRANCH_FROM, 0));
-  *first = (segment){.origin = BRANCH_FROM_START, .special = -1, .family = w->b->family, .parameter = from};
+  *first = (segment){.origin = BRANCH_FROM_START, .special = -1, .family = w->b->family};
   first->z = calloc(ric_shooting_unknowns(ric_family_shooting(first->family)), sizeof *first->z);
   if (!first->z)
     return RIC_ENOMEM;
-  const ric_status started = ric_family_start(first->family, from, guess->q, guess->v, w->b->times, guess->period,
-                                              first->z, &iterations, &error);
+  const ric_status started = branch_guess_solve(guess, w->b, first->z, &first->parameter, &iterations, &error);
   if (started == RIC_ESTOPPED)
     return started;
   keep_trouble(first, started, &error);

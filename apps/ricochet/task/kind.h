@@ -59,6 +59,10 @@ typedef struct kind {
 /** Kind of a study, by its name and its method; every kind that the schema accepts is here. */
 const kind *kind_of(const study *s);
 
+/** Lays out a tail of a group: copies of columns as table_add takes them. Texts are borrowed. */
+void kind_lay_out_tail(tail *to, const char *group, const char *row_axis, const char *offset, const char *meaning,
+                       const column *columns, size_t count, const table_axis *axes, size_t axis_count);
+
 /** An `extra` for kinds without such a table. */
 int kind_no_extra(const study *s, ric_poll poll, extra_rows *extra, message *why);
 
@@ -66,5 +70,6 @@ extern const kind kind_orbits;
 extern const kind kind_orbits_shooting;
 extern const kind kind_trajectory;
 extern const kind kind_branch;
+extern const kind kind_grazing;
 
 #endif

@@ -76,6 +76,12 @@ const column *table_column(const table *t, const char *name) {
   return NULL;
 }
 
+void table_put_long_name(table *t, const char *name, const char *long_name) {
+  for (size_t i = 0; i < t->column_count; i++)
+    if (strcmp(t->columns[i].name, name) == 0)
+      t->columns[i].long_name = long_name;
+}
+
 void table_put_attribute(table *t, const char *name, const char *attribute, double value) {
   for (size_t i = 0; i < t->column_count; i++) {
     column_attribute *free_one = t->columns[i].attributes;
@@ -101,15 +107,23 @@ void row_put_number(unsigned char *row, const column *c, double value) {
     memcpy(row + c->offset, &value, sizeof value);
 }
 
-void row_put_integer(unsigned char *row, const column *c, long long value) {
+void row_put_integer_at(unsigned char *row, const column *c, size_t i, long long value) {
   int64_t wide = value;
   if (c)
-    memcpy(row + c->offset, &wide, sizeof wide);
+    memcpy(row + c->offset + i * sizeof wide, &wide, sizeof wide);
+}
+
+void row_put_integer(unsigned char *row, const column *c, long long value) {
+  row_put_integer_at(row, c, 0, value);
+}
+
+void row_put_word_at(unsigned char *row, const column *c, size_t i, int value) {
+  if (c)
+    row[c->offset + i] = (unsigned char)value;
 }
 
 void row_put_word(unsigned char *row, const column *c, int value) {
-  if (c)
-    row[c->offset] = (unsigned char)value;
+  row_put_word_at(row, c, 0, value);
 }
 
 void row_put_text(unsigned char *row, const column *c, const char *text) {

@@ -40,7 +40,7 @@ typedef struct column {
   size_t offset; /* of the first value in a row; set by table_lay_out, a multiple of 8 */
 } column;
 
-enum { TABLE_MAX_COLUMNS = 32 };
+enum { TABLE_MAX_COLUMNS = 48 };
 
 typedef struct table {
   const char *group;    /* "orbits" */
@@ -79,6 +79,9 @@ size_t table_lay_out(table *t);
 /** Column by name, NULL when the table has none. */
 const column *table_column(const table *t, const char *name);
 
+/** Gives a column of the table, if it has one of this name, another long name, borrowed. */
+void table_put_long_name(table *t, const char *name, const char *long_name);
+
 /** Gives a column of the table, if it has one of this name, a further attribute. */
 void table_put_attribute(table *t, const char *name, const char *attribute, double value);
 
@@ -88,6 +91,10 @@ void row_put_number(unsigned char *row, const column *c, double value);
 void row_put_integer(unsigned char *row, const column *c, long long value);
 void row_put_word(unsigned char *row, const column *c, int value);
 void row_put_text(unsigned char *row, const column *c, const char *text);
+
+/** Writes value `i` of a column with further axes. */
+void row_put_integer_at(unsigned char *row, const column *c, size_t i, long long value);
+void row_put_word_at(unsigned char *row, const column *c, size_t i, int value);
 
 /** Where the numbers of a column stand in a row, to be filled in place; NULL for a NULL column. The row begins at a
  *  multiple of 8 bytes. */

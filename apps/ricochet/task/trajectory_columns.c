@@ -199,14 +199,9 @@ void trajectory_lay_out(const trajectory_shape *shape, kind_plan *plan) {
   table_add(&plan->rows, row_columns, ROW_COLUMNS, axes, axis_count);
   table_lay_out(&plan->rows);
   plan->tail_count = shape->exponents > 0 ? TRAJECTORY_TAILS : TAIL_LYAPUNOV;
-  for (size_t k = 0; k < plan->tail_count; k++) {
-    table *t = &plan->tails[k].records;
-    plan->tails[k] = (tail){.records = {.group = "trajectory", .row_axis = tails[k].axis},
-                            .offset = tails[k].offset,
-                            .meaning = tails[k].meaning};
-    table_add(t, tails[k].columns, tails[k].count, axes, axis_count);
-    table_lay_out(t);
-  }
+  for (size_t k = 0; k < plan->tail_count; k++)
+    kind_lay_out_tail(&plan->tails[k], "trajectory", tails[k].axis, tails[k].offset, tails[k].meaning, tails[k].columns,
+                      tails[k].count, axes, axis_count);
 }
 
 void trajectory_put_event(const table *t, const ric_event *event, int side, unsigned char *record) {

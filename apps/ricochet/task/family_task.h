@@ -1,0 +1,34 @@
+/* What tasks that follow a family have in common, of kinds `branch` and `grazing`: the values of the task, its family
+ * and where it starts. */
+#ifndef RICOCHET_APP_FAMILY_TASK_H
+#define RICOCHET_APP_FAMILY_TASK_H
+
+#include "branch_guess.h"
+
+typedef struct family_task {
+  study_values *values;
+  ric_poll poll;
+  branch_family family;
+  branch_guess guess;
+  bool from_state;
+} family_task;
+
+/** @param task  family_task_clear also after a refusal  @returns 0, or EXIT_RUN without memory */
+int family_task_init(family_task *task, const study *s, ric_poll poll, message *why);
+void family_task_clear(family_task *task);
+
+/** Opens the family of the present values.
+ *  @returns as branch_family_open: what the library refuses */
+ric_status family_task_open(family_task *task, ric_error *error);
+/** Finds the first guess, and where the study does not say where its family starts, the energy at which it does.
+ *  @returns as branch_guess_find, branch_guess_settle and branch_family_begin */
+ric_status family_task_begin(family_task *task, ric_error *error);
+
+/** A study of one task says at once what would be its only row: that the library refuses it. @returns 0 or EXIT_USAGE
+ */
+int family_task_check(const study *s, message *why);
+
+/** Bytes that a rank computes with. */
+double family_task_bytes(const study_values *v);
+
+#endif

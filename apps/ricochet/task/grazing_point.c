@@ -1,0 +1,227 @@
+/* The grazing point of a task, and what follows there. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "grazing.h"
+
+ric_status grazing_end(grazing_task *g, grazing_outcome outcome, ric_status status, const ric_error *error) {
+  if (status == RIC_ESTOPPED || status == RIC_ENOMEM)
+    return status;
+  g->outcome = outcome;
+  snprintf(g->reason, sizeof g->reason, "%.*s", GRAZING_REASON_BYTES - 1, error->message);
+  return RIC_OK;
+}
+
+/* --- the point ---------------------------------------------------------------------------------------------------- */
+
+/* The first touch of a motion along the family that does not pass an obstacle elsewhere. */
+typedef struct touch {
+  ric_grazing *g;
+  bool began, found;
+  double parameter, reached; /* the family's own */
+  double time, period;
+  size_t obstacle;
+} touch;
+
+static int see(const ric_family_point *point, void *user) {
+  touch *k = user;
+  k->began = true;
+  k->reached = point->parameter;
+  if (point->kind != RIC_FAMILY_GRAZING || point->orbit->outcome == RIC_INADMISSIBLE)
+    return 0;
+  k->found = true;
+  k->parameter = point->parameter;
+  k->time = point->time;
+  k->period = point->orbit->period;
+  k->obstacle = point->obstacle;
+  memcpy(k->g->z, point->z, point->unknowns * sizeof *point->z);
+  return 1;
+}
+
+static void put_obstacle(const grazing_task *g, size_t obstacle) {
+  const table *t = &g->plan->rows;
+  const ric_obstacle *touched = &g->b->model.obstacles[obstacle];
+  row_put_integer(g->row, table_column(t, "obstacle"), (long long)obstacle);
+  row_put_integer(g->row, table_column(t, "particle"), (long long)touched->coordinate);
+  row_put_word(g->row, table_column(t, "side"), touched->side > 0 ? 0 : 1);
+}
+
+static void put_when(const grazing_task *g, double parameter, double period, double time) {
+  const table *t = &g->plan->rows;
+  row_put_number(g->row, table_column(t, "parameter"), branch_family_value(g->b, parameter));
+  row_put_number(g->row, table_column(t, "period"), period);
+  row_put_number(g->row, table_column(t, "time"), time);
+  row_put_number(g->row, table_column(t, "phase"), time / period);
+}
+
+/* Per change of the study's parameter, of which the family's own may be the logarithm. */
+static double slope_of(const grazing_task *g) {
+  return g->grazing.slope / (g->b->log ? branch_family_value(g->b, g->grazing.parameter) : 1);
+}
+
+static void put_point(const grazing_task *g) {
+  const table *t = &g->plan->rows;
+  const ric_grazing *found = &g->grazing;
+  put_when(g, found->parameter, found->period, found->time);
+  put_obstacle(g, found->local.obstacle);
+  row_put_number(g->row, table_column(t, "slope"), slope_of(g));
+  row_put_number(g->row, table_column(t, "A_g"), found->local.acceleration);
+  row_put_number(g->row, table_column(t, "restitution"), found->local.restitution);
+  row_put_numbers(g->row, table_column(t, "q"), found->x);
+  row_put_numbers(g->row, table_column(t, "v"), found->x + found->numbers / 2);
+}
+
+/* The family has come to its end. */
+static ric_status end_without(grazing_task *g, double from, const touch *k, const ric_curve_run *run) {
+  const bool whole = run->end == RIC_CURVE_BOUND || run->end == RIC_CURVE_POINTS || run->end == RIC_CURVE_CLOSED;
+  g->outcome = whole ? GRAZING_NONE : GRAZING_FAILED;
+  snprintf(g->reason, sizeof g->reason,
+           "no obstacle is touched from %s = %.9g to %.9g, where the family ends: %s%s%.60s", g->b->followed->name,
+           branch_family_value(g->b, from), branch_family_value(g->b, k->reached), ric_curve_end_name(run->end),
+           run->reason[0] ? ": " : "", run->reason);
+  return RIC_OK;
+}
+
+/* A touch that cannot be made exact: of the point, what the family says of it. */
+static ric_status end_degenerate(grazing_task *g, const touch *k, ric_status status, const ric_error *error) {
+  put_when(g, k->parameter, k->period, k->time);
+  put_obstacle(g, k->obstacle);
+  return grazing_end(g, status == RIC_ENUMERIC ? GRAZING_DEGENERATE : GRAZING_FAILED, status, error);
+}
+
+ric_status grazing_find(grazing_task *g, double *z, double parameter) {
+  touch k = {.g = &g->grazing, .reached = parameter};
+  ric_curve_run run = {0};
+  ric_error error = {0};
+  ric_status status = ric_family_follow(g->b->family, z, parameter, NULL, see, &k, &run, &error);
+  if (status != RIC_OK)
+    return grazing_end(g, k.began ? GRAZING_FAILED : GRAZING_FAILED_START, status, &error);
+  if (!k.found)
+    return end_without(g, parameter, &k, &run);
+  status = ric_grazing_take(g->b->family, g->grazing.z, k.parameter, k.obstacle, k.time, NULL, &g->grazing, &error);
+  if (status != RIC_OK)
+    return end_degenerate(g, &k, status, &error);
+  g->outcome = GRAZING_FOUND;
+  put_point(g);
+  return RIC_OK;
+}
+
+/* --- the coefficients --------------------------------------------------------------------------------------------- */
+
+static long long place_or_none(size_t i) {
+  return i == SIZE_MAX ? -1 : (long long)i;
+}
+
+static void put_complex(unsigned char *row, const column *c, const ric_complex *values, size_t count) {
+  double *parts = row_numbers(row, c);
+  for (size_t i = 0; i < count; i++) {
+    parts[2 * i] = values[i].re;
+    parts[2 * i + 1] = values[i].im;
+  }
+}
+
+static void put_map(const grazing_task *g, const ric_grazing_map *map) {
+  const table *t = &g->plan->rows;
+  row_put_numbers(g->row, table_column(t, "eta"), map->eta);
+  row_put_numbers(g->row, table_column(t, "xi"), map->xi);
+  row_put_numbers(g->row, table_column(t, "kappa"), map->kappa);
+  row_put_numbers(g->row, table_column(t, "L"), map->L);
+  row_put_number(g->row, table_column(t, "stretch"), map->stretch);
+}
+
+static void put_criterion(const grazing_task *g, const ric_grazing_criterion *k) {
+  const table *t = &g->plan->rows;
+  row_put_word(g->row, table_column(t, "verdict"), (int)k->verdict);
+  row_put_text(g->row, table_column(t, "verdict_reason"), k->reason);
+  row_put_word(g->row, table_column(t, "regime"), (int)k->regime);
+  row_put_integer(g->row, table_column(t, "first_negative"), place_or_none(k->first_negative));
+  row_put_integer(g->row, table_column(t, "first_zero"), place_or_none(k->first_zero));
+  row_put_integer(g->row, table_column(t, "settled"), place_or_none(k->settled));
+  put_complex(g->row, table_column(t, "multiplier"), &k->dominant, 1);
+  row_put_number(g->row, table_column(t, "second"), k->second);
+  row_put_number(g->row, table_column(t, "alpha"), k->alpha);
+}
+
+/* All of them, whatever time or energy make of some. */
+static ric_status put_multipliers(const grazing_task *g, const ric_grazing_map *map, ric_error *error) {
+  ric_multipliers found;
+  RIC_TRY(ric_multipliers_init(&found, map->size, error));
+  const ric_status status = ric_multipliers_of_matrix(map->L, map->size, 0, NULL, &found, error);
+  if (status == RIC_OK)
+    put_complex(g->row, table_column(&g->plan->rows, "multipliers"), found.mu, map->size);
+  ric_multipliers_clear(&found);
+  return status;
+}
+
+/* --- the windows -------------------------------------------------------------------------------------------------- */
+
+static void put_edges(const grazing_task *g, const ric_grazing_window *window, size_t i) {
+  const table *t = &g->plan->rows;
+  const ric_grazing_edge *edges[] = {&window->low, &window->high};
+  static const char *const names[][3] = {{"window_low", "window_low_d", "window_low_kind"},
+                                         {"window_high", "window_high_d", "window_high_kind"}};
+  const double parameter = branch_family_value(g->b, g->grazing.parameter), slope = slope_of(g);
+  for (int k = 0; k < 2; k++) {
+    row_numbers(g->row, table_column(t, names[k][0]))[i] = parameter - edges[k]->d / slope;
+    row_numbers(g->row, table_column(t, names[k][1]))[i] = edges[k]->d;
+    row_put_word_at(g->row, table_column(t, names[k][2]), i, (int)edges[k]->kind);
+  }
+}
+
+/* A period without a window is one without orbits that are admissible and stable, or whose equations are singular. */
+static ric_status put_window(const grazing_task *g, const ric_grazing_map *map, const ric_grazing_criterion *k,
+                             size_t period, ric_error *error) {
+  const table *t = &g->plan->rows;
+  const size_t i = period - 1;
+  ric_grazing_window window = {0};
+  const ric_status status = ric_grazing_window_find(map, period, &window, error);
+  if (status != RIC_OK && status != RIC_ENUMERIC)
+    return status;
+  const bool exists = status == RIC_OK && window.exists;
+  row_put_integer_at(g->row, table_column(t, "window_period"), i, (long long)period);
+  row_put_word_at(g->row, table_column(t, "window_exists"), i, exists);
+  if (exists)
+    put_edges(g, &window, i);
+  if (k->verdict == RIC_GRAZING_CONTINUOUS && period >= 2)
+    RIC_TRY(ric_grazing_predict_window(k, map->stretch, period,
+                                       row_numbers(g->row, table_column(t, "predicted_border_d")) + i,
+                                       row_numbers(g->row, table_column(t, "predicted_flip_d")) + i, error));
+  return RIC_OK;
+}
+
+static ric_status put_windows(const grazing_task *g, const ric_grazing_map *map, const ric_grazing_criterion *k,
+                              ric_error *error) {
+  const size_t most = (size_t)value_number(g->b->values, KEY_GRAZING_WINDOWS, 0);
+  for (size_t period = 1; period <= most; period++) {
+    if (ric_poll_stops(g->b->poll))
+      return RIC_ESTOPPED;
+    RIC_TRY(put_window(g, map, k, period, error));
+  }
+  return RIC_OK;
+}
+
+/* --- together ----------------------------------------------------------------------------------------------------- */
+
+static ric_status judge(const grazing_task *g, ric_grazing_map *map, ric_error *error) {
+  const table *t = &g->plan->rows;
+  const ric_grazing_plane plane = {.time = value_number(g->b->values, KEY_GRAZING_SECTION, 0) * g->grazing.period};
+  const column *c = table_column(t, "coefficient");
+  ric_grazing_criterion criterion;
+  RIC_TRY(ric_grazing_section(g->b->family, &g->grazing, &plane, map, NULL, error));
+  put_map(g, map);
+  RIC_TRY(put_multipliers(g, map, error));
+  RIC_TRY(ric_grazing_criterion_find(map, NULL, &criterion, row_numbers(g->row, c), column_values(c),
+                                     row_numbers(g->row, table_column(t, "departure")), error));
+  put_criterion(g, &criterion);
+  return put_windows(g, map, &criterion, error);
+}
+
+ric_status grazing_judge(grazing_task *g) {
+  ric_grazing_map map;
+  ric_error error = {0};
+  RIC_TRY(ric_grazing_map_init(&map, ric_grazing_coordinates(&g->grazing, ric_family_shooting(g->b->family)), &error));
+  const ric_status status = judge(g, &map, &error);
+  ric_grazing_map_clear(&map);
+  return status == RIC_OK ? RIC_OK : grazing_end(g, GRAZING_FAILED, status, &error);
+}
