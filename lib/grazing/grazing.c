@@ -8,12 +8,13 @@
 #include "degenerate.h"
 #include "grazing_parts.h"
 
-enum { MOST_STEPS = 12 };
+enum { MOST_STEPS = 12, MOST_SHORTER = 12 };
 
-/* Step of the difference that tells how the minimum of the gap changes with the parameter, over 1 + |p|. */
-static const double slope_step = 1e-4;
+/* Step of the difference that tells how the minimum of the gap changes with the parameter, over 1 + |p|; shorter where
+ * that is too long: where the minimum changes by more than a part of the size of the gap's changes, or is not found. */
+static const double slope_step = 1e-4, longest_change = 1e-3, shorter = 0.125;
 
-/* Minima this small, over 1 + the size of the gap's changes, are zero to rounding. */
+/* Minima this small, over the size of the gap's changes, are zero to rounding. */
 static const double gap_tol = 4e-16;
 
 /* A motion given as one that grazes may be this far from it, over the size of the gap's changes. */
@@ -50,7 +51,9 @@ void ric_grazing_clear(ric_grazing *g) {
 typedef struct minimum {
   ric_family *f;
   double *z;     /* [unknowns] */
+  double *kept;  /* [unknowns] where a difference sets out */
   double period; /* of it */
+  double size;   /* of the gap's changes */
   touch touch;
 } minimum;
 
@@ -63,14 +66,31 @@ static ric_status solve(minimum *k, double parameter, ric_error *error) {
 }
 
 /* Central difference; z and the touch are those at the last parameter then. */
-static ric_status find_slope(minimum *k, double parameter, double *slope, ric_error *error) {
-  const double h = slope_step * (1 + fabs(parameter));
+static ric_status try_slope(minimum *k, double parameter, double h, double *slope, ric_error *error) {
   double gap[2];
   for (int side = 0; side < 2; side++) {
     RIC_TRY(solve(k, parameter + (side ? h : -h), error));
     gap[side] = k->touch.gap;
   }
   *slope = (gap[1] - gap[0]) / (2 * h);
+  if (fabs(gap[1] - gap[0]) > longest_change * k->size)
+    return ric_fail(error, RIC_ENUMERIC, "the minimum of the gap of obstacle %zu changes by %.3g near %.9g",
+                    k->touch.obstacle, gap[1] - gap[0], parameter);
+  return RIC_OK;
+}
+
+static ric_status find_slope(minimum *k, double parameter, double *slope, ric_error *error) {
+  const size_t unknowns = k->f->unknowns;
+  const double time = k->touch.time;
+  double h = slope_step * (1 + fabs(parameter));
+  memcpy(k->kept, k->z, unknowns * sizeof *k->z);
+  ric_status status = try_slope(k, parameter, h, slope, error);
+  for (int i = 0; (status == RIC_ENUMERIC || status == RIC_EINVAL) && i < MOST_SHORTER; i++) {
+    memcpy(k->z, k->kept, unknowns * sizeof *k->z);
+    k->touch.time = time;
+    status = try_slope(k, parameter, h *= shorter, slope, error);
+  }
+  RIC_TRY(status);
   if (*slope != 0 && isfinite(*slope))
     return RIC_OK;
   return ric_fail(error, RIC_ENUMERIC,
@@ -79,13 +99,13 @@ static ric_status find_slope(minimum *k, double parameter, double *slope, ric_er
 }
 
 /* Newton's method with a slope that stays: it shrinks the gap by the relative error of the slope each time. */
-static ric_status refine(minimum *k, ric_grazing *g, double size, ric_error *error) {
+static ric_status refine(minimum *k, ric_grazing *g, ric_error *error) {
   double best = INFINITY;
   RIC_TRY(find_slope(k, g->parameter, &g->slope, error));
   for (int i = 0; i < MOST_STEPS; i++) {
     RIC_TRY(solve(k, g->parameter, error));
     const double gap = fabs(k->touch.gap);
-    if (gap <= gap_tol * (1 + size) || (gap >= best / 2 && best < sqrt(gap_tol) * size))
+    if (gap <= gap_tol * k->size || (gap >= best / 2 && best < sqrt(gap_tol) * k->size))
       return RIC_OK;
     best = gap;
     g->parameter -= k->touch.gap / g->slope;
@@ -105,31 +125,32 @@ ric_status grazing_keep(const ric_family *f, const touch *at, double period, ric
   return ric_grazing_local_find(f->problem.system, at->obstacle, at->time, at->x, &g->local, error);
 }
 
-static ric_status fill(minimum *k, ric_grazing *g, const ric_grazing_options *o, double size, ric_error *error) {
+static ric_status fill(minimum *k, ric_grazing *g, const ric_grazing_options *o, ric_error *error) {
   RIC_TRY(solve(k, g->parameter, error));
-  if (!(fabs(k->touch.gap) <= nearly * size))
+  if (!(fabs(k->touch.gap) <= nearly * k->size))
     return ric_fail(error, RIC_ENUMERIC,
                     "the gap of obstacle %zu is %.3g at its minimum near t = %g: it is not touched", k->touch.obstacle,
                     k->touch.gap, k->touch.time);
-  RIC_TRY(degenerate_acceleration(&k->touch, k->period, size, o, error));
-  RIC_TRY(refine(k, g, size, error));
+  RIC_TRY(degenerate_acceleration(&k->touch, k->period, k->size, o, error));
+  RIC_TRY(refine(k, g, error));
   RIC_TRY(grazing_keep(k->f, &k->touch, k->period, g, error));
-  return degenerate_motion(k->f, k->z, g, size, o, error);
+  return degenerate_motion(k->f, k->z, g, k->size, o, error);
 }
 
 static ric_status take(ric_family *f, double parameter, const touch *at, const ric_grazing_options *o, ric_grazing *g,
                        ric_error *error) {
   minimum k = {.f = f, .z = g->z, .touch = *at};
-  double size;
   g->parameter = parameter;
   g->second = f->problem.second;
   k.touch.x = g->x;
   RIC_TRY(family_set(f, parameter, f->problem.second, error));
-  k.touch.rates = malloc(g->numbers * sizeof *k.touch.rates);
-  ric_status status = k.touch.rates ? degenerate_size(f->shooting, k.z, f->given, at->obstacle, &size, error)
-                                    : ric_fail(error, RIC_ENOMEM, "no memory for %zu rates", g->numbers);
+  k.touch.rates = malloc((g->numbers + g->unknowns) * sizeof *k.touch.rates);
+  if (!k.touch.rates)
+    return ric_fail(error, RIC_ENOMEM, "no memory for %zu rates", g->numbers);
+  k.kept = k.touch.rates + g->numbers;
+  ric_status status = degenerate_size(f->shooting, k.z, f->given, at->obstacle, &k.size, error);
   if (status == RIC_OK)
-    status = fill(&k, g, o, size, error);
+    status = fill(&k, g, o, error);
   free(k.touch.rates);
   return status;
 }
@@ -156,6 +177,8 @@ ric_status ric_grazing_take(ric_family *f, const double *z, double parameter, si
   if (obstacle >= f->problem.system->obstacle_count)
     return ric_fail(error, RIC_EINVAL, "obstacle = %zu, expected less than %zu", obstacle,
                     f->problem.system->obstacle_count);
+  if (!isfinite(time))
+    return ric_fail(error, RIC_EINVAL, "time = %g, expected a finite one", time);
   if (z != g->z)
     memcpy(g->z, z, g->unknowns * sizeof *z);
   family_forget(f);

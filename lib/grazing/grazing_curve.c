@@ -22,7 +22,12 @@ typedef struct tracer {
 static ric_status look(tracer *t, const ric_family_curve_point *p, ric_error *error) {
   ric_family *f = t->f;
   ric_grazing *g = &t->grazing;
-  touch at = {.obstacle = g->local.obstacle, .time = g->time, .x = g->x, .rates = t->rates};
+  const size_t obstacle = g->local.obstacle;
+  const shooting_gaps *gaps = f->shooting->gaps; /* of the point's orbit: where the gap is zero on the curve */
+  const gap_found *least = gaps->hit[obstacle] ? &gaps->own : &gaps->free;
+  touch at = {.obstacle = obstacle, .time = least->time, .x = g->x, .rates = t->rates};
+  if (least->obstacle != obstacle)
+    return ric_fail(error, RIC_ENUMERIC, "obstacle %zu is touched where obstacle %zu was", least->obstacle, obstacle);
   memcpy(g->z, p->z, g->unknowns * sizeof *g->z);
   g->parameter = p->parameter;
   g->second = p->second;

@@ -15,6 +15,9 @@
 /* Flows that cross a section at an angle below it do not cross it. */
 static const double least_angle = 1e-8;
 
+/* Sections this near to an impact, over the period, are at it. */
+static const double impact_tol = 1e-9;
+
 static bool is_forced(const ric_family *f) {
   return f->problem.motion.kind == RIC_MOTION_FORCED;
 }
@@ -65,6 +68,14 @@ static ric_status read_rates(section *k, ric_error *error) {
   return RIC_OK;
 }
 
+/* How fast a motion with rates of this size crosses the section at most. The rate of time, 1, has another unit: it
+ * stands by itself. */
+static double fastest(const section *k) {
+  const double *normal = k->normal, *rates = k->rates;
+  const double still = sqrt(dot(normal, normal, k->numbers)), speed = sqrt(dot(rates, rates, k->numbers));
+  return still * speed + (k->forced ? fabs(normal[k->numbers]) : 0);
+}
+
 static ric_status set_normal(section *k, const double *given, ric_error *error) {
   if (given)
     memcpy(k->normal, given, k->state * sizeof *given);
@@ -73,12 +84,11 @@ static ric_status set_normal(section *k, const double *given, ric_error *error) 
   else
     memcpy(k->normal, k->rates, k->state * sizeof *k->rates);
   const double length = sqrt(dot(k->normal, k->normal, k->state));
-  const double speed = sqrt(dot(k->rates, k->rates, k->state));
   if (!(length > 0 && length < INFINITY))
     return ric_fail(error, RIC_EINVAL, "plane.normal of length %g, expected finite numbers, not all zero", length);
   for (size_t i = 0; i < k->state; i++)
     k->normal[i] /= length;
-  const double angle = dot(k->normal, k->rates, k->state) / speed;
+  const double angle = dot(k->normal, k->rates, k->state) / fastest(k);
   if (fabs(angle) > least_angle)
     return RIC_OK;
   return ric_fail(error, RIC_EINVAL,
@@ -173,6 +183,17 @@ static ric_status set_map(section *k, ric_grazing_map *map, ric_error *error) {
   return RIC_OK;
 }
 
+/* Neighbouring motions are on different sides of the impact there. */
+static bool is_at_impact(const section *k, double time) {
+  const arc_plan *arcs = &k->f->shooting->arcs;
+  for (size_t i = 0; i < arcs->sequence_count; i++) {
+    const double apart = remainder(time - arcs_time(arcs->impacts[i], k->g->z, k->g->period), k->g->period);
+    if (fabs(apart) <= impact_tol * k->g->period)
+      return true;
+  }
+  return false;
+}
+
 static ric_status check(const section *k, const ric_grazing_map *map, ric_error *error) {
   if (k->f->problem.motion.kind == RIC_MOTION_EVEN)
     return ric_fail(error, RIC_EINVAL, "motion.kind = even, expected forced, autonomous or conservative");
@@ -180,12 +201,16 @@ static ric_status check(const section *k, const ric_grazing_map *map, ric_error 
     return ric_fail(error, RIC_EINVAL, "map.size = %zu, expected %zu", map->size, k->size);
   if (!(k->time >= 0 && k->time < k->g->period))
     return ric_fail(error, RIC_EINVAL, "plane.time = %g, expected 0 <= time < %g, the period", k->time, k->g->period);
+  if (is_at_impact(k, k->time))
+    return ric_fail(error, RIC_EINVAL, "plane.time = %.9g, at which the motion has an impact, expected another",
+                    k->time);
   return RIC_OK;
 }
 
 ric_status section_open(section *k, ric_family *f, const ric_grazing *g, const ric_grazing_plane *plane,
                         ric_grazing_map *map, ric_error *error) {
-  *k = (section){.g = g, .f = f, .forced = is_forced(f), .numbers = g->numbers, .time = plane ? plane->time : 0};
+  *k = (section){.g = g, .f = f, .forced = is_forced(f), .numbers = g->numbers};
+  k->time = plane ? plane->time : is_at_impact(k, 0) ? g->time : 0;
   k->state = g->numbers + (k->forced ? 1 : 0);
   k->size = k->state - 1;
   k->touch = g->time >= k->time ? g->time : g->time + g->period; /* on the way from the section */

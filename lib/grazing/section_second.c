@@ -14,7 +14,7 @@
 
 #include "section.h"
 
-enum { TRIALS = 5, MOST_APPROACHES = 4, MOST_CROSSINGS = 20 };
+enum { TRIALS = 7, MOST_APPROACHES = 4, MOST_CROSSINGS = 20 };
 
 /* The largest y, over the root of A_g (T / 2 pi)^2, a size of the gap's changes; halved for extrapolation. */
 static const double largest_y = 0.05;
@@ -22,19 +22,23 @@ static const double largest_y = 0.05;
 /* Steps onto the section below this part of the period are rounding when they no longer shrink. */
 static const double crossing_tol = 1e-11;
 
+/* A motion whose crossing is farther off than this part of the period has missed the section. */
+static const double farthest = 0.25;
+
 static const double two_pi = 6.283185307179586;
 
 typedef struct second {
   const section *k;
   const ric_grazing_map *map;
   ric_bypass *bypass;
-  ric_trajectory *trajectory;
-  ric_flow *flow;       /* onto the section */
-  double *x, *home;     /* [numbers] a state; the motion on the section */
-  double *difference;   /* [state] */
-  double *normal;       /* [numbers] n */
-  double *smooth;       /* [size] what -n y^2 becomes without impacts, over y^2 */
-  double *table, *rate; /* [TRIALS][size]; [numbers] */
+  ric_trajectory *trajectory; /* NULL: the motion has no impacts */
+  double *x, *home;           /* [numbers] a state; the motion on the section */
+  double *difference;         /* [state] */
+  double *normal;             /* [numbers] n */
+  double *smooth;             /* [size] what -n y^2 becomes without impacts, over y^2 */
+  double *rows, *rate;        /* [TRIALS][size] of Neville's scheme; [numbers] */
+  double *best;               /* [size] kappa so far */
+  size_t next, expected;      /* impact of the motion that the next one is to be; how many more there are to be */
   double *block;
 } second;
 
@@ -51,7 +55,7 @@ static ric_status open(second *w, ric_error *error) {
   const ric_flow_options flow = k->f->problem.motion.flow;
   ric_trajectory_options motion = ric_trajectory_options_default();
   ric_bypass_options bypass = ric_bypass_options_default();
-  double *store = w->block = calloc(4 * n + k->state + (1 + TRIALS) * size, sizeof *store);
+  double *store = w->block = calloc(4 * n + k->state + (2 + TRIALS) * size, sizeof *store);
   if (!store)
     return ric_fail(error, RIC_ENOMEM, "no memory for motions of %zu numbers", n);
   w->x = take(&store, n);
@@ -60,24 +64,22 @@ static ric_status open(second *w, ric_error *error) {
   w->rate = take(&store, n);
   w->difference = take(&store, k->state);
   w->smooth = take(&store, size);
-  w->table = take(&store, TRIALS * size);
+  w->rows = take(&store, TRIALS * size);
+  w->best = take(&store, size);
   motion.flow = bypass.flow = flow;
-  motion.pass_rigid = k->f->impacts == 0; /* then a section just behind the touch is none too late */
   motion.poll = k->f->problem.motion.poll;
   bypass.reach = k->g->period / 4;
   RIC_TRY(ric_bypass_create(system, k->g->local.obstacle, &bypass, &w->bypass, error));
-  RIC_TRY(ric_flow_create(system, &flow, &w->flow, error));
-  return ric_trajectory_create(system, &motion, &w->trajectory, error);
+  return k->f->impacts > 0 ? ric_trajectory_create(system, &motion, &w->trajectory, error) : RIC_OK;
 }
 
 static void close(second *w) {
   ric_bypass_destroy(&w->bypass);
-  ric_flow_destroy(&w->flow);
   ric_trajectory_destroy(&w->trajectory);
   free(w->block);
 }
 
-/* Sets `home`, n, and where n goes. */
+/* Sets `home`, n, and where -n goes. */
 static ric_status begin(second *w, ric_error *error) {
   const section *k = w->k;
   const ric_grazing *g = k->g;
@@ -120,17 +122,9 @@ static ric_status look(second *w, double t, double *ahead, ric_error *error) {
   return RIC_OK;
 }
 
+/* As if there were no obstacles, forwards or back. */
 static ric_status flow_to(second *w, double t, double end, ric_error *error) {
-  const size_t n = w->k->f->problem.system->coordinates, m = w->k->numbers - n;
-  RIC_TRY(ric_flow_start(w->flow, t, w->x, w->x + n, error));
-  while (ric_flow_time(w->flow) != end) {
-    RIC_TRY(ric_flow_step(w->flow, end, error));
-    ric_flow_accept(w->flow, 1);
-  }
-  memcpy(w->x, ric_flow_q(w->flow), n * sizeof *w->x);
-  if (m > 0)
-    memcpy(w->x + n, ric_flow_u(w->flow), m * sizeof *w->x);
-  return RIC_OK;
+  return arc_runner_move(&w->k->f->shooting->runner, t, end, w->x, 0, NULL, NULL, error);
 }
 
 /* Moves the state onto the section; its difference from the motion is set then. */
@@ -141,6 +135,8 @@ static ric_status cross(second *w, double t, ric_error *error) {
     const double size = fabs(ahead);
     if (t + ahead == t || (size <= crossing_tol * w->k->g->period && size > before / 2))
       return RIC_OK;
+    if (!(size <= farthest * w->k->g->period))
+      break;
     RIC_TRY(flow_to(w, t, t + ahead, error));
     t += ahead;
     before = size;
@@ -151,46 +147,122 @@ static ric_status cross(second *w, double t, ric_error *error) {
 /* --- the limit
  * -------------------------------------------------------------------------------------------------------- */
 
-/* (s y xi + y^2 kappa + ... - s y xi) / y^2 into a row [size]. */
-static ric_status try(second *w, double y, double *row, ric_error *error) {
-  const section *k = w->k;
-  const ric_grazing *g = k->g;
-  const size_t n = k->f->problem.system->coordinates;
-  const double end = k->touch + k->time + g->period - k->touch;
+/* When the motion next has one of its impacts after the touch, since then. */
+static double time_to(const section *k, size_t which) {
+  const double period = k->g->period;
+  const double time = fmod(arcs_time(k->f->shooting->arcs.impacts[which], k->g->z, period) - k->touch, period);
+  return time < 0 ? time + period : time;
+}
+
+/* Of the impacts of the motion until the section, how many there are; the first one after the touch. */
+static size_t expect(const section *k, double duration, size_t *first) {
+  size_t count = 0;
+  *first = 0;
+  for (size_t i = 0; i < k->f->shooting->arcs.sequence_count; i++) {
+    count += time_to(k, i) <= duration;
+    if (time_to(k, i) < time_to(k, *first))
+      *first = i;
+  }
+  return count;
+}
+
+/* Ends a run after the last impact that is expected, and at one that is not. */
+static int meet(const ric_event *e, void *user) {
+  second *w = user;
+  const arc_plan *arcs = &w->k->f->shooting->arcs;
+  if (!ric_event_jumps(e))
+    return 0;
+  if (e->obstacle != arcs->sequence[w->next])
+    return 1;
+  w->next = (w->next + 1) % arcs->sequence_count;
+  return --w->expected == 0;
+}
+
+/* From the touch through the impacts that the motion has before the section; `time` is that of the last one. It may be
+ * later than the motion is on the section. */
+static ric_status meet_impacts(second *w, double end, double *time, ric_error *error) {
+  const size_t n = w->k->f->problem.system->coordinates;
+  const ric_observer observer = {.event = meet, .user = w};
   ric_run run;
-  for (size_t i = 0; i < k->numbers; i++)
-    w->x[i] = g->x[i] - y * y * w->normal[i];
-  RIC_TRY(ric_bypass_map(w->bypass, k->touch, w->x, w->x, NULL, error));
-  RIC_TRY(ric_trajectory_start(w->trajectory, k->touch, w->x, w->x + n, error));
-  RIC_TRY(ric_trajectory_run(w->trajectory, end, NULL, &run, error));
-  if (run.outcome != RIC_RUN_COMPLETED)
+  RIC_TRY(ric_trajectory_start(w->trajectory, *time, w->x, w->x + n, error));
+  RIC_TRY(ric_trajectory_run(w->trajectory, end + farthest * w->k->g->period, &observer, &run, error));
+  if (run.outcome != RIC_RUN_ENDED && run.outcome != RIC_RUN_COMPLETED)
     return ric_fail(error, RIC_ENUMERIC, "beside the grazing motion: %s at t = %g: %s",
                     ric_run_outcome_name(run.outcome), run.time, run.reason);
+  if (w->expected > 0)
+    return ric_fail(error, RIC_ENUMERIC, "beside the grazing motion there are other impacts than its own until t = %g",
+                    run.time);
   memcpy(w->x, ric_trajectory_q(w->trajectory), n * sizeof *w->x);
-  if (k->numbers > n)
-    memcpy(w->x + n, ric_trajectory_u(w->trajectory), (k->numbers - n) * sizeof *w->x);
-  RIC_TRY(cross(w, end, error));
+  if (w->k->numbers > n)
+    memcpy(w->x + n, ric_trajectory_u(w->trajectory), (w->k->numbers - n) * sizeof *w->x);
+  *time = run.time;
+  return RIC_OK;
+}
+
+/* From the touch onto the section. What comes after the last impact is smooth when no obstacle is in the way: the touch
+ * of the next period, and impacts just behind the section, are not met early. */
+static ric_status run_on(second *w, ric_error *error) {
+  const section *k = w->k;
+  const double end = k->time + k->g->period;
+  double time = k->touch;
+  w->expected = expect(k, end - k->touch, &w->next);
+  if (w->expected > 0)
+    RIC_TRY(meet_impacts(w, end, &time, error));
+  RIC_TRY(flow_to(w, time, end, error));
+  return cross(w, end, error);
+}
+
+/* (s y xi + y^2 kappa + ... - s y xi) / y^2 into a row [size]. y is that of the minimum of the gap that the bypass map
+ * has found: at the grazing motion itself the gap is zero to rounding only. */
+static ric_status try(second *w, double depth, double *row, ric_error *error) {
+  const section *k = w->k;
+  ric_bypass_seen seen;
+  for (size_t i = 0; i < k->numbers; i++)
+    w->x[i] = k->g->x[i] - depth * w->normal[i];
+  RIC_TRY(ric_bypass_map(w->bypass, k->touch, w->x, w->x, &seen, error));
+  if (!(seen.psi < 0))
+    return ric_fail(error, RIC_ENUMERIC, "the gap is %.3g at a state %.3g behind grazing, expected less than zero",
+                    seen.psi, depth);
+  RIC_TRY(run_on(w, error));
+  const double y = sqrt(-seen.psi);
   for (size_t j = 0; j < k->size; j++) {
-    double along = 0;
+    double along = -depth * w->smooth[j];
     for (size_t i = 0; i < k->state; i++)
       along += k->basis[j * k->state + i] * w->difference[i];
-    row[j] = (along / y - w->map->stretch * w->map->xi[j]) / y - w->smooth[j];
+    row[j] = (along / y - w->map->stretch * w->map->xi[j]) / y;
   }
   return RIC_OK;
 }
 
-/* By Neville's scheme, from a largest y. */
-static ric_status extrapolate(second *w, double most, double *kappa, ric_error *error) {
+/* The next order of Neville's scheme, in place from the last row. Of all entries the best one is that which changes
+ * least from the coarser one of the two that it is made of: beyond it rounding takes over. */
+static void raise_order(second *w, int order, double *error) {
   const size_t size = w->k->size;
+  for (size_t i = TRIALS - 1; i >= (size_t)order; i--) {
+    double *fine = w->rows + i * size, most = 0;
+    const double *coarse = fine - size;
+    for (size_t j = 0; j < size; j++) {
+      const double change = (fine[j] - coarse[j]) / (ldexp(1, order) - 1);
+      most = fmax(most, fabs(fine[j] + change - coarse[j]));
+      fine[j] += change;
+    }
+    if (most < *error) {
+      *error = most;
+      memcpy(w->best, fine, size * sizeof *fine);
+    }
+  }
+}
+
+/* From a largest y. */
+static ric_status extrapolate(second *w, double most, double *kappa, ric_error *error) {
+  double change = INFINITY;
   for (int i = 0; i < TRIALS; i++)
-    RIC_TRY(try(w, ldexp(most, -i), w->table + (size_t)i * size, error));
+    RIC_TRY(try(w, ldexp(most * most, -2 * i), w->rows + (size_t)i * w->k->size, error));
   for (int order = 1; order < TRIALS; order++)
-    for (int i = TRIALS - 1; i >= order; i--)
-      for (size_t j = 0; j < size; j++) {
-        double *fine = w->table + (size_t)i * size + j, coarse = *(fine - size);
-        *fine += (*fine - coarse) / (ldexp(1, order) - 1);
-      }
-  memcpy(kappa, w->table + (TRIALS - 1) * size, size * sizeof *kappa);
+    raise_order(w, order, &change);
+  if (!(change < INFINITY))
+    return ric_fail(error, RIC_ENUMERIC, "motions beside the grazing one do not come back as numbers");
+  memcpy(kappa, w->best, w->k->size * sizeof *kappa);
   return RIC_OK;
 }
 

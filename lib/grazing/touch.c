@@ -12,9 +12,10 @@ static const double time_tol = 1e-15;
 /* Steps of Newton's method are not to leave the minimum it starts at. */
 static const double longest_step = 0.05;
 
+/* Into [0, T): a time below zero by less than rounding at T is zero. */
 static double folded(double time, double period) {
-  const double t = fmod(time, period);
-  return t < 0 ? t + period : t;
+  const double t = fmod(time, period), shifted = t < 0 ? t + period : t;
+  return shifted < period ? shifted : 0;
 }
 
 static ric_status read_gap(const ric_system *s, touch *k, ric_error *error) {
@@ -37,6 +38,7 @@ static double step_of(const touch *k, double period) {
 
 ric_status touch_find(ric_shooting *s, const double *z, double given, double period, touch *k, ric_error *error) {
   double before = INFINITY;
+  k->time = folded(k->time, period);
   for (int i = 0; i < MOST_STEPS; i++) {
     RIC_TRY(ric_shooting_transfer(s, z, given, k->time, k->time, k->x, NULL, error));
     RIC_TRY(read_gap(s->system, k, error));

@@ -4,7 +4,7 @@
 
 #include "shooting_spectrum.h"
 
-/* Impacts this near to the end of the time, over the period, belong to it: after them. */
+/* Ends of pieces this near to one of the times, over the period, are at it: after them. */
 static const double end_tol = 1e-12;
 
 typedef struct transfer {
@@ -29,7 +29,7 @@ static ric_status pass(transfer *k, size_t index, double shift, ric_error *error
   const double slack = end_tol * k->period;
   const piece_run run = shooting_begin(s, index, k->z, k->period, WISH_STATE);
   double begin = run.begin - k->origin, end = run.end - k->origin, from = k->from - shift, to = k->to - shift;
-  if (end <= from + slack || begin > to)
+  if (end <= from + slack || begin > to + slack)
     return RIC_OK;
   if (!k->begun) {
     RIC_TRY(move(k, begin, fmax(begin, from), false, error));
@@ -39,7 +39,7 @@ static ric_status pass(transfer *k, size_t index, double shift, ric_error *error
   }
   if (!k->matrix)
     return RIC_OK;
-  RIC_TRY(move(k, begin, fmin(end, to), true, error));
+  RIC_TRY(move(k, begin, fmax(begin, fmin(end, to)), true, error));
   if (run.piece->how != PIECE_IMPACT || end > to + slack)
     return RIC_OK;
   RIC_TRY(shooting_spectrum_jump(s, &run, error));
@@ -52,7 +52,7 @@ static ric_status pass(transfer *k, size_t index, double shift, ric_error *error
 static ric_status check(const ric_shooting *s, double from, double to, double period, ric_error *error) {
   if (s->arcs.kind == RIC_MOTION_EVEN)
     return ric_fail(error, RIC_EINVAL, "derivatives between times of an even motion, expected another kind");
-  if (from > -INFINITY && to >= from && to <= from + period * (1 + end_tol))
+  if (fabs(from) < INFINITY && to >= from && to <= from + period * (1 + end_tol))
     return RIC_OK;
   return ric_fail(error, RIC_EINVAL, "from = %.9g, to = %.9g, expected from <= to <= from + %.9g, the period", from, to,
                   period);
@@ -74,6 +74,8 @@ ric_status ric_shooting_transfer(ric_shooting *s, const double *z, double given,
   for (int round = 0; round < 2; round++)
     for (size_t p = 0; p < s->arcs.count; p++)
       RIC_TRY(pass(&k, p, round * k.period, error));
+  if (!k.begun)
+    return ric_fail(error, RIC_ENUMERIC, "no arc of the motion is at t = %g", from);
   if (matrix)
     memcpy(matrix, s->spectrum->matrix, size * size * sizeof *matrix);
   return RIC_OK;

@@ -118,10 +118,31 @@ static void over_a_period_they_have_the_multipliers(void **state) {
   shot_clear(&s);
 }
 
+/* Nearer to the end of a piece, or of the period, than rounding tells. */
+static void states_at_ends_of_pieces_are_found(void **state) {
+  (void)state;
+  shot s = forced_motion(3);
+  const double hit = s.orbit.impact_time[0], nearly[] = {0, 1e-13, -1e-13, 1e-15, -1e-15, 3e-12, -3e-12};
+  for (size_t k = 0; k < 3; k++)
+    for (size_t i = 0; i < sizeof nearly / sizeof *nearly; i++) {
+      const double cut = hit + (double)k * period / 3;
+      double x[N] = {NAN, NAN, NAN, NAN}, expected[N], matrix[N * N];
+      if (k == 0 && nearly[i] < -1e-12)
+        continue; /* before the impact */
+      find(&s, cut, cut, expected, NULL);
+      find(&s, cut + nearly[i] * period, cut + nearly[i] * period, x, matrix);
+      for (size_t j = 0; j < N; j++)
+        assert_close(x[j], expected[j], 1e-9);
+      for (size_t j = 0; j < N * N; j++)
+        assert_close(matrix[j], j % (N + 1) == 0 ? 1 : 0, 1e-9);
+    }
+  shot_clear(&s);
+}
+
 static void times_out_of_order_are_refused(void **state) {
   (void)state;
   shot s = forced_motion(1);
-  const double times[][2] = {{1, 0.5}, {0, 7}, {NAN, 1}, {0, NAN}, {-INFINITY, 0}};
+  const double times[][2] = {{1, 0.5}, {0, 7}, {NAN, 1}, {0, NAN}, {-INFINITY, 0}, {INFINITY, INFINITY}};
   double x[N];
   ric_error error;
   for (size_t k = 0; k < sizeof times / sizeof *times; k++) {
@@ -135,6 +156,7 @@ static void times_out_of_order_are_refused(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(they_are_those_of_event_driven_runs), cmocka_unit_test(parts_of_a_period_make_the_whole),
-      cmocka_unit_test(over_a_period_they_have_the_multipliers), cmocka_unit_test(times_out_of_order_are_refused)};
+      cmocka_unit_test(over_a_period_they_have_the_multipliers), cmocka_unit_test(states_at_ends_of_pieces_are_found),
+      cmocka_unit_test(times_out_of_order_are_refused)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -41,7 +41,8 @@ RIC_API void ric_grazing_clear(ric_grazing *grazing);
 
 /** All relative to how much the gap that is touched changes along the motion. */
 typedef struct ric_grazing_options {
-  double touch_tol;   /* 1e-6: other minima of gaps within it of zero are second grazing points */
+  double touch_tol;   /* 1e-6: other minima of gaps within it of zero are second grazing points; no more than 0.01 in
+                         the unit of the gap */
   double degenerate;  /* 1e-6: A_g T^2 below it is `A_g near zero` */
   double transversal; /* 1e-6: T times the gap rate of an impact of the motion below it is `not transversal` */
 } ric_grazing_options;
@@ -56,12 +57,12 @@ RIC_API ric_grazing_options ric_grazing_options_default(void);
  *  @param grazing  initialised for the family's shooting; set, with its slope
  *  @returns RIC_EINVAL for even motions and options out of range; RIC_ENUMERIC when there is no grazing point on the
  * way, with how far the family got and why it ended, and for degenerate ones by name: A_g near zero, two grazing points
- * at once, an impact that is not transversal; as ric_family_follow. */
+ * at once, an impact that is not transversal; as ric_family_follow. `grazing` is of no use then. */
 RIC_API ric_status ric_grazing_find(ric_family *family, double *z, double parameter, const ric_grazing_options *options,
                                     ric_grazing *grazing, ric_error *error);
 
 /** The same from a motion that grazes already, or nearly: a point of kind `grazing`, or of a curve in two parameters.
- *  @param z  [unknowns] @param obstacle, time  where it does
+ *  @param z  [unknowns] @param obstacle, time  where it does: the minimum of the gap that is nearest to this time
  *  @returns as ric_grazing_find */
 RIC_API ric_status ric_grazing_take(ric_family *family, const double *z, double parameter, size_t obstacle, double time,
                                     const ric_grazing_options *options, ric_grazing *grazing, ric_error *error);
@@ -78,11 +79,13 @@ RIC_API size_t ric_grazing_coordinates(const ric_grazing *grazing, const ric_sho
 
 /** The coefficients on a section: of d = 0, and kappa with them.
  *  @param family  the system in its state at grazing (ric_grazing_find and _take leave it so)
- *  @param plane  NULL: stroboscopic, or across the flow, at the time of the first state
+ *  @param plane  NULL: stroboscopic, or across the flow, at t = 0; at the touch where the motion has an impact at t = 0
  *  @param map  initialised for ric_grazing_coordinates
  *  @param basis  [coordinates][numbers of the section's state], set to the orthonormal vectors V^T that the coordinates
  *                belong to: unit vectors on stroboscopic sections; may be NULL
- *  @returns RIC_EINVAL for a plane that the motion does not cross, or at an impact; as ric_shooting_transfer. */
+ *  @returns RIC_EINVAL for a plane that the motion does not cross, or at an impact, and for systems with compliant
+ *           obstacles, as ric_bypass_create; RIC_ENUMERIC where motions beside it, however near, have other impacts
+ *           than it, or miss the section; as ric_shooting_transfer. */
 RIC_API ric_status ric_grazing_section(ric_family *family, const ric_grazing *grazing, const ric_grazing_plane *plane,
                                        ric_grazing_map *map, double *basis, ric_error *error);
 

@@ -143,8 +143,9 @@ RIC_API ric_status ric_shooting_multipliers(ric_shooting *shooting, const double
  *  @param to  in [from, from + T]
  *  @param x  [n + m] state at `from`, after an impact there; set
  *  @param transfer  [n + m][n + m] row-major, set; may be NULL
- *  @returns RIC_EINVAL for even motions and times out of order; RIC_ENUMERIC for an impact on the way that is too slow
- *           for a derivative; as ric_shooting_residual. */
+ *  @returns RIC_EINVAL for even motions and times out of order or not finite; RIC_ENUMERIC for an impact on the way
+ *           that is too slow for a derivative, and where impacts out of order leave no arc at `from`; as
+ * ric_shooting_residual. */
 RIC_API ric_status ric_shooting_transfer(ric_shooting *shooting, const double *z, double given, double from, double to,
                                          double *x, double *transfer, ric_error *error);
 
