@@ -242,9 +242,11 @@ def rows_without_a_grazing_point_say_why(ricochet, folder):
     for rows_of, task in ((found, 1), (none, 0)):
         for name in ("slope", "A_g", "alpha", "stretch", "eta", "L", "coefficient", "multipliers", "q", "window_low"):
             assert np.isnan(rows_of[name][task]).all(), name
-        assert rows_of["verdict"][task] == "none" and rows_of["regime"][task] == "none"
+        assert rows_of["regime"][task] == "none"
         assert (rows_of["window_period"][task] == -1).all() and not rows_of["window_exists"][task].any()
         assert rows_of["first_negative"][task] == rows_of["settled"][task] == rows_of["first_zero"][task] == -1
+    assert found["verdict"][1] == "undecided" and found["verdict_reason"][1] == found["reason"][1]
+    assert none["verdict"] == 2 * ["none"] and not any(none["verdict_reason"])
     assert np.isnan(none["parameter"]).all() and (none["particle"] == -1).all() and none["side"] == 2 * ["none"]
 
 

@@ -99,6 +99,10 @@ static int grazing_evaluate(worker *w, const kind_plan *plan, uint64_t task, uns
     grazing_clear_row(&plan->rows, row);
     grazing_end(&g, GRAZING_FAILED, RIC_EINVAL, &(ric_error){.message = "no memory for it"});
   }
+  if (g.outcome == GRAZING_DEGENERATE) { /* what follows there is not known, and why not is */
+    row_put_word(row, table_column(&plan->rows, "verdict"), RIC_GRAZING_UNDECIDED);
+    row_put_text(row, table_column(&plan->rows, "verdict_reason"), g.reason);
+  }
   row_put_word(row, table_column(&plan->rows, "outcome"), (int)g.outcome);
   row_put_text(row, table_column(&plan->rows, "reason"), g.reason);
   return 0;
