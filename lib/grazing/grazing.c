@@ -44,8 +44,7 @@ void ric_grazing_clear(ric_grazing *g) {
   *g = (ric_grazing){0};
 }
 
-/* --- the minimum of the gap as a function of the parameter ----------------------------------------------------------
- */
+/* --- the minimum of the gap as a function of the parameter --- */
 
 /* The motion at a parameter, from one at another. */
 typedef struct minimum {
@@ -114,8 +113,7 @@ static ric_status refine(minimum *k, ric_grazing *g, ric_error *error) {
                   k->touch.obstacle, g->parameter);
 }
 
-/* --- from a motion that nearly grazes -------------------------------------------------------------------------------
- */
+/* --- from a motion that nearly grazes --- */
 
 ric_status grazing_keep(const ric_family *f, const touch *at, double period, ric_grazing *g, ric_error *error) {
   g->given = f->given;

@@ -54,8 +54,7 @@ static double dot(const double *a, const double *b, size_t count) {
   return sum;
 }
 
-/* --- the section ----------------------------------------------------------------------------------------------------
- */
+/* --- the section --- */
 
 /* F at the state on the section. */
 static ric_status read_rates(section *k, ric_error *error) {
@@ -117,8 +116,7 @@ void section_project(const section *k, const double *vector, double *z) {
   }
 }
 
-/* --- the coefficients -----------------------------------------------------------------------------------------------
- */
+/* --- the coefficients --- */
 
 static ric_status transfer(section *k, double from, double to, ric_error *error) {
   return ric_shooting_transfer(k->f->shooting, k->g->z, k->g->given, from, to, k->x, k->matrix, error);

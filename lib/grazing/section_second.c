@@ -98,8 +98,7 @@ static ric_status begin(second *w, ric_error *error) {
   return RIC_OK;
 }
 
-/* --- onto the section
- * ------------------------------------------------------------------------------------------------- */
+/* --- onto the section --- */
 
 /* How far the state w->x at a time is from the motion on the section a period later, and the time in which the flow
  * would bring it onto the section, to first order. */
@@ -144,8 +143,7 @@ static ric_status cross(second *w, double t, ric_error *error) {
   return ric_fail(error, RIC_ENUMERIC, "the section is not met near t = %g", t);
 }
 
-/* --- the limit
- * -------------------------------------------------------------------------------------------------------- */
+/* --- the limit --- */
 
 /* When the motion next has one of its impacts after the touch, since then. */
 static double time_to(const section *k, size_t which) {

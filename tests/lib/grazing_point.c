@@ -256,3 +256,26 @@ void grazing_point_behind(const grazing_point *p, double depth, double *x) {
   for (size_t i = 0; i < p->numbers; i++)
     x[i] = p->x[i] - depth * p->local.eta[i] / square;
 }
+
+double largest_difference(const double *a, const double *b, size_t size) {
+  double most = 0;
+  for (size_t i = 0; i < size; i++)
+    most = fmax(most, fabs(a[i] - b[i]));
+  return most;
+}
+
+ric_bypass *bypass_within(ric_system *system, double reach) {
+  ric_bypass *bypass = NULL;
+  ric_bypass_options options = ric_bypass_options_default();
+  ric_error error = {0};
+  options.reach = reach;
+  if (ric_bypass_create(system, 0, &options, &bypass, &error) != RIC_OK)
+    fail_msg("%s", error.message);
+  return bypass;
+}
+
+void assert_refused(ric_status status, ric_status expected, const ric_error *error, const char *text) {
+  assert_int_equal(status, expected);
+  if (!strstr(error->message, text))
+    fail_msg("\"%s\", expected \"%s\" in it", error->message, text);
+}

@@ -38,4 +38,13 @@ void grazing_point_clear(grazing_point *p);
 /** The state `depth` behind grazing: x - depth eta / |eta|^2. */
 void grazing_point_behind(const grazing_point *p, double depth, double *x);
 
+/** Bypass map of obstacle 0. Asserts that this works. */
+ric_bypass *bypass_within(ric_system *system, double reach);
+
+/** Largest modulus of a - b. */
+double largest_difference(const double *a, const double *b, size_t size);
+
+/** Asserts that a call was refused, with this in its message. */
+void assert_refused(ric_status status, ric_status expected, const ric_error *error, const char *text);
+
 #endif

@@ -29,13 +29,6 @@ static ric_bypass_seen mapped(ric_bypass *b, double t, const double *x, double *
   return seen;
 }
 
-static double difference(const double *a, const double *b, size_t size) {
-  double most = 0;
-  for (size_t i = 0; i < size; i++)
-    most = fmax(most, fabs(a[i] - b[i]));
-  return most;
-}
-
 /* --- closed forms ------------------------------------------------------------------------------------------------- */
 
 /* q'' = pull, gap q: a parabola. Impact at t_C = tau - sqrt(-2 psi / pull), and the way back from there. */
@@ -127,10 +120,10 @@ static errors missed(ric_bypass *b, const grazing_point *p, const double *kappa,
   double psi = mapped(b, p->t, x, image).psi;
   assert_int_equal(ric_bypass_leading(b, &p->local, p->t, x, leading, &seen, NULL), RIC_OK);
   assert_close(seen.psi, psi, 1e-15);
-  e.leading = difference(image, leading, p->numbers);
+  e.leading = largest_difference(image, leading, p->numbers);
   for (size_t i = 0; i < p->numbers; i++)
     leading[i] -= psi * kappa[i];
-  e.second = difference(image, leading, p->numbers);
+  e.second = largest_difference(image, leading, p->numbers);
   return e;
 }
 
@@ -171,7 +164,7 @@ static void leading_order_errs_in_first_order_in_the_distance_beside_the_ray(voi
       x[k] = p.x[k] + far * random_uniform(&source, -1, 1);
     double y = sqrt(fmax(-mapped(b, p.t, x, image).psi, 0));
     assert_int_equal(ric_bypass_leading(b, &p.local, p.t, x, leading, NULL, NULL), RIC_OK);
-    assert_true(difference(image, leading, p.numbers) <= 20 * y * (y + far));
+    assert_true(largest_difference(image, leading, p.numbers) <= 20 * y * (y + far));
   }
   ric_bypass_destroy(&b);
   grazing_point_clear(&p);
@@ -271,7 +264,7 @@ static void the_map_is_continuous_at_grazing(void **state) {
         grazing_point_behind(&p, depth, x);
         ric_bypass_seen seen = mapped(b, p.t, x, image);
         double y = sqrt(depth + 1e-15); /* with the rounding of gaps */
-        assert_true(difference(x, image, p.numbers) <= 1.5 * most * y);
+        assert_true(largest_difference(x, image, p.numbers) <= 1.5 * most * y);
         if (depth >= 1e-14) { /* on the way in, and not by subtraction: the gap rate is that of the way */
           double rate = -sqrt(2 * p.local.acceleration * depth);
           assert_close(seen.gap_rate / rate, 1, 2 * y + 3e-16 / depth);
@@ -353,8 +346,9 @@ static void check_motion(const grazing_point *p, ric_bypass *b, const double *x,
   }
   assert_int_equal(impacts, seen.psi < 0);
   double tolerance = 10 * off + (impacts ? off / sqrt(-seen.psi) : 0);
-  if (!(difference(full, parts, p->numbers) <= tolerance))
-    fail_msg("off by %.3g, expected %.3g, psi = %.3g", difference(full, parts, p->numbers), tolerance, seen.psi);
+  if (!(largest_difference(full, parts, p->numbers) <= tolerance))
+    fail_msg("off by %.3g, expected %.3g, psi = %.3g", largest_difference(full, parts, p->numbers), tolerance,
+             seen.psi);
   *(impacts ? &count->impacts : &count->free_motions) += 1;
 }
 

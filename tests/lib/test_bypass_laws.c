@@ -4,30 +4,6 @@
 #include "double_pendulum.h"
 #include "grazing_point.h"
 
-static double difference(const double *a, const double *b, size_t size) {
-  double most = 0;
-  for (size_t i = 0; i < size; i++)
-    most = fmax(most, fabs(a[i] - b[i]));
-  return most;
-}
-
-static ric_bypass *bypass_within(ric_system *system, double reach) {
-  ric_bypass *bypass = NULL;
-  ric_bypass_options options = ric_bypass_options_default();
-  ric_error error = {0};
-  options.reach = reach;
-  if (ric_bypass_create(system, 0, &options, &bypass, &error) != RIC_OK)
-    fail_msg("%s", error.message);
-  return bypass;
-}
-
-/* Asserts that a call was refused, with this in its message. */
-static void assert_refused(ric_status status, ric_status expected, const ric_error *error, const char *text) {
-  assert_int_equal(status, expected);
-  if (!strstr(error->message, text))
-    fail_msg("\"%s\", expected \"%s\" in it", error->message, text);
-}
-
 /* --- coefficients ------------------------------------------------------------------------------------------------- */
 
 static double psi_at(ric_bypass *b, double t, const double *x) {
@@ -116,8 +92,8 @@ static void oscillator_as_a_map_has_the_same_bypass(void **state) {
     x[1] = random_uniform(&source, -0.05, 0.05);
     assert_int_equal(ric_bypass_map(one, p.t, x, a, &seen, NULL), RIC_OK);
     assert_int_equal(ric_bypass_map(other, p.t, x, b, NULL, NULL), RIC_OK);
-    assert_true(difference(a, b, 2) <= 1e-13 + 1e-14 / sqrt(-seen.psi));
-    assert_true(difference(p.local.xi, q.local.xi, 2) <= 1e-9);
+    assert_true(largest_difference(a, b, 2) <= 1e-13 + 1e-14 / sqrt(-seen.psi));
+    assert_true(largest_difference(p.local.xi, q.local.xi, 2) <= 1e-9);
     ric_bypass_destroy(&one);
     ric_bypass_destroy(&other);
     grazing_point_clear(&p);
@@ -172,15 +148,15 @@ static void pendulum_as_a_map_has_the_same_coefficients_and_bypass(void **state)
     assert_int_equal(ric_system_create_first_order(&model, &system, NULL), RIC_OK);
     assert_int_equal(ric_grazing_local_init(&local, 4, NULL), RIC_OK);
     assert_int_equal(ric_grazing_local_find(system, 0, p.t, p.x, &local, NULL), RIC_OK);
-    assert_true(difference(local.xi, p.local.xi, 4) <= 1e-8);
-    assert_true(difference(local.eta, p.local.eta, 4) <= 1e-10);
+    assert_true(largest_difference(local.xi, p.local.xi, 4) <= 1e-8);
+    assert_true(largest_difference(local.eta, p.local.eta, 4) <= 1e-10);
     assert_close(local.acceleration, p.local.acceleration, 1e-8);
     ric_bypass *one = bypass_within(p.system, 1), *other = bypass_within(system, 1);
     for (int k = 3; k <= 10; k++) {
       grazing_point_behind(&p, pow(10, -k), x);
       assert_int_equal(ric_bypass_map(one, p.t, x, a, NULL, NULL), RIC_OK);
       assert_int_equal(ric_bypass_map(other, p.t, x, b, NULL, NULL), RIC_OK);
-      assert_true(difference(a, b, 4) <= 1e-10 * pow(10, -k / 2.0) + 3e-15 * pow(10, k / 2.0));
+      assert_true(largest_difference(a, b, 4) <= 1e-10 * pow(10, -k / 2.0) + 3e-15 * pow(10, k / 2.0));
     }
     ric_bypass_destroy(&one);
     ric_bypass_destroy(&other);
@@ -268,7 +244,7 @@ static void xi_of_a_map_is_its_one_sided_derivative(void **state) {
     ric_grazing_local local;
     double x[4] = {0.3, 0, 0.8, rates[k]}, expected[4] = {0, 0, -0.2, 1.9};
     assert_int_equal(find_bead(drags, x, &local, NULL), RIC_OK);
-    assert_true(difference(local.xi, expected, 4) <= 1e-9);
+    assert_true(largest_difference(local.xi, expected, 4) <= 1e-9);
     assert_close(local.restitution, 0.9, 1e-9);
     assert_close(local.acceleration, 2, 1e-9);
     ric_grazing_local_clear(&local);

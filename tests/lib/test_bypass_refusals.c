@@ -3,30 +3,6 @@
 
 #include "grazing_point.h"
 
-static double difference(const double *a, const double *b, size_t size) {
-  double most = 0;
-  for (size_t i = 0; i < size; i++)
-    most = fmax(most, fabs(a[i] - b[i]));
-  return most;
-}
-
-static ric_bypass *bypass_within(ric_system *system, double reach) {
-  ric_bypass *bypass = NULL;
-  ric_bypass_options options = ric_bypass_options_default();
-  ric_error error = {0};
-  options.reach = reach;
-  if (ric_bypass_create(system, 0, &options, &bypass, &error) != RIC_OK)
-    fail_msg("%s", error.message);
-  return bypass;
-}
-
-/* Asserts that a call was refused, with this in its message. */
-static void assert_refused(ric_status status, ric_status expected, const ric_error *error, const char *text) {
-  assert_int_equal(status, expected);
-  if (!strstr(error->message, text))
-    fail_msg("\"%s\", expected \"%s\" in it", error->message, text);
-}
-
 /* --- which minimum ------------------------------------------------------------------------------------------------ */
 
 /* Nothing moves but the wall: h = q + amplitude cos(w t), with minima at odd multiples of pi / w. */
@@ -135,7 +111,7 @@ static void long_lattices_have_the_map_of_the_other_flow(void **state) {
   assert_int_equal(ric_bypass_map(cvodes, 0.2, x, other, &seen_other, NULL), RIC_OK);
   assert_true(seen.psi < -1e-2 && seen.gap_rate < 0);
   assert_close(seen.psi, seen_other.psi, 1e-12);
-  assert_close(difference(image, other, (size_t)2 * LONG), 0, 1e-11);
+  assert_close(largest_difference(image, other, (size_t)2 * LONG), 0, 1e-11);
   ric_bypass_destroy(&taylor);
   ric_bypass_destroy(&cvodes);
   ric_system_destroy(&system);
@@ -219,7 +195,7 @@ static void the_map_follows_its_system(void **state) {
   grazing_point_make(&p, GRAZING_ONE_MASS, 0.8, 1);
   ric_bypass *b = bypass_within(p.system, 1);
   assert_int_equal(ric_bypass_map(b, p.t, x, image, NULL, NULL), RIC_OK);
-  assert_true(difference(x, image, 2) > 0.01);
+  assert_true(largest_difference(x, image, 2) > 0.01);
   assert_int_equal(ric_system_set_obstacles(p.system, &wall, 1, NULL), RIC_OK);
   assert_int_equal(ric_bypass_map(b, p.t, x, x, NULL, NULL), RIC_OK);
   assert_true(x[0] == 1.01 && x[1] == 0);

@@ -3,49 +3,10 @@
 #include "support.h"
 
 #include "forced_oscillator.h"
+#include "grazed.h"
+#include "van_der_pol.h"
 
 static const double two_pi = 6.283185307179586;
-
-static ric_family_options range(double low, double high, double step) {
-  ric_family_options o = ric_family_options_default();
-  o.curve.p_low = low;
-  o.curve.p_high = high;
-  o.curve.step = o.curve.step_most = step;
-  o.multipliers = false;
-  return o;
-}
-
-static ric_family *family_of(const ric_family_problem *problem, const ric_family_options *options) {
-  ric_family *f = NULL;
-  ric_error error;
-  if (ric_family_create(problem, options, &f, &error) != RIC_OK)
-    fail_msg("%s", error.message);
-  return f;
-}
-
-static double *start(ric_family *f, double parameter, const double *q, const double *u, const double *times,
-                     double period) {
-  double *z = calloc(ric_shooting_unknowns(ric_family_shooting(f)), sizeof *z);
-  ric_error error;
-  assert_non_null(z);
-  if (ric_family_start(f, parameter, q, u, times, period, z, NULL, &error) != RIC_OK)
-    fail_msg("%s", error.message);
-  return z;
-}
-
-static void find(ric_family *f, double *z, double from, ric_grazing *g) {
-  ric_error error;
-  assert_int_equal(ric_grazing_init(g, ric_family_shooting(f), NULL), RIC_OK);
-  if (ric_grazing_find(f, z, from, NULL, g, &error) != RIC_OK)
-    fail_msg("%s", error.message);
-}
-
-static void section(ric_family *f, const ric_grazing *g, const ric_grazing_plane *plane, ric_grazing_map *map) {
-  ric_error error;
-  assert_int_equal(ric_grazing_map_init(map, ric_grazing_coordinates(g, ric_family_shooting(f)), NULL), RIC_OK);
-  if (ric_grazing_section(f, g, plane, map, NULL, &error) != RIC_OK)
-    fail_msg("%s", error.message);
-}
 
 enum { COEFFICIENTS = 12 };
 
@@ -55,8 +16,7 @@ static ric_grazing_criterion judge(const ric_grazing_map *map, double *c) {
   return k;
 }
 
-/* --- x'' + c x' + x = a cos(w t), wall at 1, e = 0.8 ----------------------------------------------------------------
- */
+/* --- x'' + c x' + x = a cos(w t), wall at 1, e = 0.8 --- */
 
 typedef struct expectation {
   double damping, frequency, amplitude, lambda;
@@ -77,13 +37,12 @@ static void forced_oscillators_graze_where_their_closed_form_says(void **state) 
     forced_oscillator_init(&o);
     o.lattice.on_site.damping = x->damping;
     ric_family_problem problem = forced_oscillator_problem(&o, 0, 1, w);
-    ric_family_options options = range(0.5, 60, 5);
-    ric_family *f = family_of(&problem, &options);
-    double *z = start(f, 0.5, rest, rest + 1, NULL, period), c[COEFFICIENTS];
-    ric_grazing g;
-    ric_grazing_map map;
-    find(f, z, 0.5, &g);
-    section(f, &g, NULL, &map);
+    const ric_family_options options = grazed_within(0.5, 60, 5);
+    grazed at = grazed_from(&problem, &options, 0.5, rest, rest + 1, NULL, period);
+    double c[COEFFICIENTS];
+    grazed_find(&at);
+    const ric_grazing g = at.grazing;
+    ric_grazing_map map = grazed_map(&at, NULL);
     const ric_grazing_criterion verdict = judge(&map, c);
     assert_close(g.parameter / amplitude, 1, 3e-14);
     if (!isnan(x->amplitude))
@@ -99,28 +58,25 @@ static void forced_oscillators_graze_where_their_closed_form_says(void **state) 
     if (!isnan(x->lambda))
       assert_close(verdict.dominant.re, x->lambda, x->lambda == 0.67032415 ? 1e-8 : 1e-3);
     ric_grazing_map_clear(&map);
-    ric_grazing_clear(&g);
-    free(z);
-    ric_family_destroy(&f);
+    grazed_clear(&at);
     forced_oscillator_clear(&o);
   }
 }
 
 /* c_i from any section. */
-static void compare_sections(ric_family *f, const ric_grazing *g, size_t state, double tolerance) {
+static void compare_sections(grazed *g, size_t state, double tolerance) {
   double first[COEFFICIENTS], c[COEFFICIENTS];
   double *normal = calloc(state, sizeof *normal);
   unsigned long long seed = 11;
   for (int k = 0; k < 12; k++) {
-    ric_grazing_plane plane = {.time = g->period * k / 12.0, .normal = k % 3 == 2 ? normal : NULL};
-    ric_grazing_map map;
+    ric_grazing_plane plane = {.time = g->grazing.period * k / 12.0, .normal = k % 3 == 2 ? normal : NULL};
     if (k == 11)
-      plane.time = g->time;
+      plane.time = g->grazing.time;
     for (size_t i = 0; i < state; i++) {
       seed = seed * 6364136223846793005ULL + 1442695040888963407ULL;
       normal[i] = (double)(seed >> 11) / 9007199254740992.0 - 0.5;
     }
-    section(f, g, &plane, &map);
+    ric_grazing_map map = grazed_map(g, &plane);
     judge(&map, k == 0 ? first : c);
     for (int i = 0; k > 0 && i < COEFFICIENTS; i++)
       assert_close(c[i], first[i], tolerance * (1 + fabs(first[0])));
@@ -134,21 +90,16 @@ static void coefficients_do_not_depend_on_the_section(void **state) {
   forced_oscillator o;
   forced_oscillator_init(&o);
   ric_family_problem problem = forced_oscillator_problem(&o, 0, 1, 1.7);
-  ric_family_options options = range(0.1, 60, 5);
-  ric_family *f = family_of(&problem, &options);
+  ric_family_options options = grazed_within(0.1, 60, 5);
   const double rest[2] = {0};
-  double *z = start(f, 0.1, rest, rest + 1, NULL, two_pi / 1.7);
-  ric_grazing g;
-  find(f, z, 0.1, &g);
-  compare_sections(f, &g, 3, 1e-12);
-  ric_grazing_clear(&g);
-  free(z);
-  ric_family_destroy(&f);
+  grazed at = grazed_from(&problem, &options, 0.1, rest, rest + 1, NULL, two_pi / 1.7);
+  grazed_find(&at);
+  compare_sections(&at, 3, 1e-12);
+  grazed_clear(&at);
   forced_oscillator_clear(&o);
 }
 
-/* --- curves in two parameters ---------------------------------------------------------------------------------------
- */
+/* --- curves in two parameters --- */
 
 typedef struct seen_curve {
   double worst, phase_worst; /* of the force, of a sign change against the nearest of the closed form */
@@ -184,21 +135,19 @@ static void signs_change_along_a_curve_where_the_closed_form_says(void **state) 
   forced_oscillator o;
   forced_oscillator_init(&o);
   ric_family_problem problem = forced_oscillator_problem(&o, 0, 1, 1.33);
-  ric_family_options options = range(0.01, 60, 5);
-  ric_family *f = family_of(&problem, &options);
+  ric_family_options options = grazed_within(0.01, 60, 5);
   const double rest[2] = {0};
-  double *z = start(f, 0.01, rest, rest + 1, NULL, two_pi / 1.33);
-  ric_grazing g;
+  grazed at = grazed_from(&problem, &options, 0.01, rest, rest + 1, NULL, two_pi / 1.33);
   ric_curve_options curve = ric_curve_options_default();
   ric_curve_run run;
   ric_error error;
   seen_curve seen = {0};
   size_t expected = 0;
-  find(f, z, 0.01, &g);
+  grazed_find(&at);
   curve.p_high = 3.3;
   curve.step = curve.step_most = 0.05;
   curve.newton_tol = 1e-11;
-  if (ric_grazing_trace(f, &g, &curve, COUNT, see_curve, &seen, &run, &error) != RIC_OK)
+  if (ric_grazing_trace(at.family, &at.grazing, &curve, COUNT, see_curve, &seen, &run, &error) != RIC_OK)
     fail_msg("%s", error.message);
   assert_int_equal(run.end, RIC_CURVE_BOUND);
   for (size_t i = 0; i < COUNT; i++) {
@@ -210,36 +159,13 @@ static void signs_change_along_a_curve_where_the_closed_form_says(void **state) 
   assert_int_equal(seen.zeros, expected);
   assert_int_equal(run.missed, 0);
   assert_true(seen.worst < 1e-10 && seen.phase_worst < 1e-8);
-  ric_grazing_clear(&g);
-  free(z);
-  ric_family_destroy(&f);
+  grazed_clear(&at);
   forced_oscillator_clear(&o);
 }
 
-/* --- a self-excited oscillator before a wall ------------------------------------------------------------------------
- */
+/* --- a self-excited oscillator before a wall --- */
 
 static double wall_at = 3;
-
-static int rate(double t, const double *x, double *out, void *user) {
-  (void)t, (void)user;
-  out[0] = x[1];
-  out[1] = 0.5 * (1 - x[0] * x[0]) * x[1] - x[0];
-  return 0;
-}
-
-static int gap(double t, const double *x, size_t obstacle, double *h, void *user) {
-  (void)t, (void)obstacle;
-  *h = *(const double *)user - x[0];
-  return 0;
-}
-
-static int bounce(double t, const double *x, size_t obstacle, double *after, void *user) {
-  (void)t, (void)obstacle, (void)user;
-  after[0] = x[0];
-  after[1] = -0.8 * x[1];
-  return 0;
-}
 
 static ric_status move_wall(ric_system *system, const double *p, double *given, void *user, ric_error *error) {
   (void)system, (void)given, (void)error;
@@ -251,40 +177,35 @@ enum { SAMPLES = 6001 };
 
 static void a_limit_cycle_grazes_at_its_amplitude(void **state) {
   (void)state;
-  const ric_first_order model = {
-      .states = 2, .obstacles = 1, .rate = rate, .gap = gap, .impact = bounce, .user = &wall_at};
   ric_family_problem problem = {
+      .system = van_der_pol_system(&wall_at),
       .motion = {.kind = RIC_MOTION_AUTONOMOUS, .flow = {.tolerance = 1e-13, .longest_step = INFINITY}},
       .set = move_wall,
       .user = &wall_at,
       .parameters = 1};
-  assert_int_equal(ric_system_create_first_order(&model, &problem.system, NULL), RIC_OK);
-  ric_family_options options = range(1, 3, 0.3);
+  ric_family_options options = grazed_within(1, 3, 0.3);
   options.curve.direction = -1;
-  ric_family *f = family_of(&problem, &options);
   const double x[2] = {2, 0};
-  double *z = start(f, 3, x, NULL, NULL, 6.4), amplitude = 0;
+  grazed at = grazed_from(&problem, &options, 3, x, NULL, NULL, 6.4);
+  double amplitude = 0;
   static double samples[SAMPLES][2];
-  ric_grazing g;
-  assert_int_equal(ric_shooting_states(ric_family_shooting(f), z, 0, SAMPLES, samples[0], NULL, NULL), RIC_OK);
+  assert_int_equal(ric_shooting_states(ric_family_shooting(at.family), at.z, 0, SAMPLES, samples[0], NULL, NULL),
+                   RIC_OK);
   for (size_t k = 0; k < SAMPLES; k++)
     amplitude = fmax(amplitude, samples[k][0]);
-  find(f, z, 3, &g);
-  assert_close(g.parameter, amplitude, 1e-6); /* of the order of the square of the distance of samples */
-  assert_close(g.slope, 1, 1e-9);
-  assert_close(g.x[0], g.parameter, 1e-12);
-  assert_close(g.x[1], 0, 1e-11);
-  assert_close(g.local.acceleration, g.parameter, 1e-8); /* h'' = x at the turning point */
-  assert_close(g.local.xi[1], -1.8, 1e-8);
-  compare_sections(f, &g, 2, 1e-8);
-  ric_grazing_clear(&g);
-  free(z);
-  ric_family_destroy(&f);
+  grazed_find(&at);
+  assert_close(at.grazing.parameter, amplitude, 1e-6); /* of the order of the square of the distance of samples */
+  assert_close(at.grazing.slope, 1, 1e-9);
+  assert_close(at.grazing.x[0], at.grazing.parameter, 1e-12);
+  assert_close(at.grazing.x[1], 0, 1e-11);
+  assert_close(at.grazing.local.acceleration, at.grazing.parameter, 1e-8); /* h'' = x at the turning point */
+  assert_close(at.grazing.local.xi[1], -1.8, 1e-8);
+  compare_sections(&at, 2, 1e-8);
+  grazed_clear(&at);
   ric_system_destroy(&problem.system);
 }
 
-/* --- motions with impacts -------------------------------------------------------------------------------------------
- */
+/* --- motions with impacts --- */
 
 typedef struct two_masses {
   ric_lattice lattice;
@@ -318,22 +239,18 @@ static void a_motion_that_hits_one_wall_grazes_another(void **state) {
       .user = &m,
       .parameters = 1};
   assert_int_equal(ric_system_create_lattice(&m.lattice, m.walls, 2, &problem.system, NULL), RIC_OK);
-  ric_family_options options = range(0.01, 5, 0.2);
+  ric_family_options options = grazed_within(0.01, 5, 0.2);
   options.curve.direction = -1;
-  ric_family *f = family_of(&problem, &options);
   const double q[2] = {0.1, 1}, u[2] = {0.1, -0.5}, time = 0.5;
-  double *z = start(f, 5, q, u, &time, two_pi);
-  ric_grazing g;
-  find(f, z, 5, &g);
-  assert_int_equal(g.local.obstacle, 0);
-  assert_close(g.slope, 1, 1e-9);
-  assert_close(g.x[0], g.parameter, 1e-13);
-  assert_close(g.x[2], 0, 1e-12);
-  assert_close(g.local.xi[2], -1.5, 1e-14);
-  compare_sections(f, &g, 5, 1e-9);
-  ric_grazing_clear(&g);
-  free(z);
-  ric_family_destroy(&f);
+  grazed at = grazed_from(&problem, &options, 5, q, u, &time, two_pi);
+  grazed_find(&at);
+  assert_int_equal(at.grazing.local.obstacle, 0);
+  assert_close(at.grazing.slope, 1, 1e-9);
+  assert_close(at.grazing.x[0], at.grazing.parameter, 1e-13);
+  assert_close(at.grazing.x[2], 0, 1e-12);
+  assert_close(at.grazing.local.xi[2], -1.5, 1e-14);
+  compare_sections(&at, 5, 1e-9);
+  grazed_clear(&at);
   ric_system_destroy(&problem.system);
 }
 

@@ -2,7 +2,7 @@
  * the second one along, by f times its change of speed, turns xi, and with it the signs of c_i = eta L^i xi. */
 #include "support.h"
 
-#include <ricochet/ricochet.h>
+#include "grazed.h"
 
 enum { COEFFICIENTS = 12, TRANSIENT = 100, KEPT = 40 };
 
@@ -59,36 +59,22 @@ static ric_system *make(dragged *d) {
 
 static judged judge(dragged *d) {
   judged j;
-  ric_error error;
-  ric_family *f = NULL;
-  ric_grazing g;
-  ric_grazing_map map;
   const double rest[4] = {0};
   ric_family_problem problem = {.system = make(d),
                                 .motion = {.kind = RIC_MOTION_FORCED, .flow = ric_flow_options_default()},
                                 .set = set,
                                 .user = d,
                                 .parameters = 1};
-  ric_family_options options = ric_family_options_default();
-  options.multipliers = false;
-  options.curve.newton_tol = 1e-9;
-  options.curve.p_high = 100;
-  options.curve.step = options.curve.step_most = 5;
-  assert_int_equal(ric_family_create(&problem, &options, &f, NULL), RIC_OK);
-  assert_int_equal(ric_family_start(f, 0.5, rest, NULL, NULL, two_pi / frequency, j.smooth, NULL, NULL), RIC_OK);
-  assert_int_equal(ric_grazing_init(&g, ric_family_shooting(f), NULL), RIC_OK);
-  if (ric_grazing_find(f, j.smooth, 0.5, NULL, &g, &error) != RIC_OK)
-    fail_msg("%s", error.message);
-  assert_int_equal(ric_grazing_map_init(&map, 4, NULL), RIC_OK);
-  if (ric_grazing_section(f, &g, NULL, &map, NULL, &error) != RIC_OK)
-    fail_msg("%s", error.message);
+  const ric_family_options options = grazed_within(0.5, 100, 5);
+  grazed g = grazed_from(&problem, &options, 0.5, rest, NULL, NULL, two_pi / frequency);
+  grazed_find(&g);
+  ric_grazing_map map = grazed_map(&g, NULL);
   assert_int_equal(ric_grazing_criterion_find(&map, NULL, &j.criterion, j.c, COEFFICIENTS, NULL, NULL), RIC_OK);
-  assert_close(g.local.xi[3], -d->drag * (1 + restitution), 1e-7);
-  j.amplitude = g.parameter;
-  memcpy(j.smooth, g.z, sizeof j.smooth);
+  assert_close(g.grazing.local.xi[3], -d->drag * (1 + restitution), 1e-7);
+  j.amplitude = g.grazing.parameter;
+  memcpy(j.smooth, g.grazing.z, sizeof j.smooth);
   ric_grazing_map_clear(&map);
-  ric_grazing_clear(&g);
-  ric_family_destroy(&f);
+  grazed_clear(&g);
   ric_system_destroy(&problem.system);
   return j;
 }

@@ -1,12 +1,11 @@
 /* Grazing points that the theory does not cover, and requests that make no sense: each refused by name. */
 #include "support.h"
 
-#include <ricochet/ricochet.h>
+#include "grazed.h"
 
 static const double two_pi = 6.283185307179586;
 
-/* --- x'' + x' + x = p_0 cos t with gaps of its own
- * ---------------------------------------------------------------------- */
+/* --- x'' + x' + x = p_0 cos t with gaps of its own --- */
 
 typedef struct shaped {
   double wall; /* 1 in all of them but where it moves */
@@ -54,9 +53,7 @@ static ric_status set_wall(ric_system *system, const double *p, double *given, v
 
 typedef struct sought {
   ric_system *system;
-  ric_family *family;
-  double z[2];
-  ric_grazing grazing;
+  grazed at;
 } sought;
 
 /* The motion sin t times the force, from the first parameter on. */
@@ -71,29 +68,21 @@ static sought seek(shaped *s, size_t obstacles, double from, double to,
                                       .set = set,
                                       .user = s,
                                       .parameters = 1};
-  ric_family_options options = ric_family_options_default();
-  options.multipliers = false;
-  options.curve.newton_tol = 1e-10;
-  options.curve.p_low = fmin(from, to);
-  options.curve.p_high = fmax(from, to);
+  ric_family_options options = grazed_within(fmin(from, to), fmax(from, to), 0.2);
   options.curve.direction = to - from;
-  options.curve.step = options.curve.step_most = 0.2;
   const double q = 0, u = force_now;
-  assert_int_equal(ric_family_create(&problem, &options, &k.family, NULL), RIC_OK);
-  assert_int_equal(ric_family_start(k.family, from, &q, &u, NULL, two_pi, k.z, NULL, NULL), RIC_OK);
-  assert_int_equal(ric_grazing_init(&k.grazing, ric_family_shooting(k.family), NULL), RIC_OK);
+  k.at = grazed_from(&problem, &options, from, &q, &u, NULL, two_pi);
   return k;
 }
 
 static void sought_clear(sought *k) {
-  ric_grazing_clear(&k->grazing);
-  ric_family_destroy(&k->family);
+  grazed_clear(&k->at);
   ric_system_destroy(&k->system);
 }
 
-static void assert_refused(sought *k, double from, const char *word) {
+static void assert_refused(sought *k, const char *word) {
   ric_error error;
-  assert_int_equal(ric_grazing_find(k->family, k->z, from, NULL, &k->grazing, &error), RIC_ENUMERIC);
+  assert_int_equal(ric_grazing_find(k->at.family, k->at.z, k->at.from, NULL, &k->at.grazing, &error), RIC_ENUMERIC);
   print_message("[ %s ]\n", error.message);
   assert_non_null(strstr(error.message, word));
 }
@@ -103,7 +92,7 @@ static void two_grazing_points_at_once(void **state) {
   shaped s = {1, straight};
   force_now = 0.5;
   sought k = seek(&s, 2, 0.5, 2, set_force);
-  assert_refused(&k, 0.5, "two grazing points at once");
+  assert_refused(&k, "two grazing points at once");
   sought_clear(&k);
 }
 
@@ -113,10 +102,10 @@ static void one_of_them_is_found(void **state) {
   force_now = 0.5;
   sought k = seek(&s, 1, 0.5, 2, set_force);
   ric_error error;
-  if (ric_grazing_find(k.family, k.z, 0.5, NULL, &k.grazing, &error) != RIC_OK)
+  if (ric_grazing_find(k.at.family, k.at.z, 0.5, NULL, &k.at.grazing, &error) != RIC_OK)
     fail_msg("%s", error.message);
-  assert_close(k.grazing.parameter, 1, 1e-9);
-  assert_close(k.grazing.phase, 0.25, 1e-8);
+  assert_close(k.at.grazing.parameter, 1, 1e-9);
+  assert_close(k.at.grazing.phase, 0.25, 1e-8);
   sought_clear(&k);
 }
 
@@ -125,7 +114,7 @@ static void acceleration_near_zero(void **state) {
   shaped s = {0.5, flat};
   force_now = 1;
   sought k = seek(&s, 1, 0.5, -1, set_wall);
-  assert_refused(&k, 0.5, "A_g near zero");
+  assert_refused(&k, "A_g near zero");
   sought_clear(&k);
 }
 
@@ -134,12 +123,11 @@ static void no_obstacle_on_the_way(void **state) {
   shaped s = {1, straight};
   force_now = 0.2;
   sought k = seek(&s, 1, 0.2, 0.9, set_force);
-  assert_refused(&k, 0.2, "no obstacle is touched from 0.2 to 0.9");
+  assert_refused(&k, "no obstacle is touched from 0.2 to 0.9");
   sought_clear(&k);
 }
 
-/* --- requests -------------------------------------------------------------------------------------------------------
- */
+/* --- requests --- */
 
 static void assert_invalid(ric_status status, const ric_error *error, const char *word) {
   assert_int_equal(status, RIC_EINVAL);
@@ -154,7 +142,7 @@ static void requests_out_of_range_are_refused(void **state) {
   ric_grazing_map map;
   force_now = 0.5;
   sought k = seek(&s, 1, 0.5, 2, set_force);
-  ric_grazing *g = &k.grazing;
+  ric_grazing *g = &k.at.grazing;
   ric_grazing_options bad[3];
   static const char *const names[3] = {"touch_tol", "degenerate", "transversal"};
   for (int i = 0; i < 3; i++)
@@ -163,23 +151,23 @@ static void requests_out_of_range_are_refused(void **state) {
   bad[1].degenerate = NAN;
   bad[2].transversal = 1;
   for (int i = 0; i < 3; i++)
-    assert_invalid(ric_grazing_find(k.family, k.z, 0.5, &bad[i], g, &error), &error, names[i]);
-  assert_invalid(ric_grazing_take(k.family, k.z, 1, 3, 1, NULL, g, &error), &error, "obstacle = 3");
-  assert_int_equal(ric_grazing_take(k.family, k.z, 0.5, 0, 1.5, NULL, g, &error), RIC_ENUMERIC);
+    assert_invalid(ric_grazing_find(k.at.family, k.at.z, 0.5, &bad[i], g, &error), &error, names[i]);
+  assert_invalid(ric_grazing_take(k.at.family, k.at.z, 1, 3, 1, NULL, g, &error), &error, "obstacle = 3");
+  assert_int_equal(ric_grazing_take(k.at.family, k.at.z, 0.5, 0, 1.5, NULL, g, &error), RIC_ENUMERIC);
   assert_non_null(strstr(error.message, "it is not touched"));
-  assert_int_equal(ric_grazing_find(k.family, k.z, 0.5, NULL, g, &error), RIC_OK);
+  assert_int_equal(ric_grazing_find(k.at.family, k.at.z, 0.5, NULL, g, &error), RIC_OK);
   assert_int_equal(ric_grazing_map_init(&map, 2, NULL), RIC_OK);
   /* The speed is (cos t, -sin t, 1): a section that holds it. */
   const double along[3] = {1, 0, -1}, none[3] = {0}, nan[3] = {NAN, 1, 1};
   const ric_grazing_plane planes[] = {{0, along}, {0, none}, {0, nan}, {-1, NULL}, {7, NULL}, {NAN, NULL}};
   for (size_t i = 0; i < sizeof planes / sizeof *planes; i++)
-    assert_invalid(ric_grazing_section(k.family, g, &planes[i], &map, NULL, &error), &error, "plane.");
+    assert_invalid(ric_grazing_section(k.at.family, g, &planes[i], &map, NULL, &error), &error, "plane.");
   ric_grazing_map_clear(&map);
   assert_int_equal(ric_grazing_map_init(&map, 3, NULL), RIC_OK);
-  assert_invalid(ric_grazing_section(k.family, g, NULL, &map, NULL, &error), &error, "map.size = 3");
+  assert_invalid(ric_grazing_section(k.at.family, g, NULL, &map, NULL, &error), &error, "map.size = 3");
   ric_grazing_map_clear(&map);
   ric_curve_run run;
-  assert_invalid(ric_grazing_trace(k.family, g, NULL, 65, NULL, NULL, &run, &error), &error, "count = 65");
+  assert_invalid(ric_grazing_trace(k.at.family, g, NULL, 65, NULL, NULL, &run, &error), &error, "count = 65");
   sought_clear(&k);
 }
 

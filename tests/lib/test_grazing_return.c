@@ -4,16 +4,14 @@
  * the root of the penetration. */
 #include "support.h"
 
-#include <ricochet/ricochet.h>
-
 #include "double_pendulum.h"
+#include "grazed.h"
 
 enum { MASSES = 5, MOST = 2 * MASSES };
 
 static const double two_pi = 6.283185307179586;
 
-/* --- systems, driven with the force p_0
- * --------------------------------------------------------------------------------- */
+/* --- systems, driven with the force p_0 --- */
 
 typedef struct driven {
   const char *name;
@@ -94,55 +92,40 @@ static void make_pendulum(driven *d) {
   assert_int_equal(ric_system_create_mechanical(&model, &d->system, NULL), RIC_OK);
 }
 
-/* --- the motion at grazing, and its map
- * -------------------------------------------------------------------------------- */
+/* --- the motion at grazing, and its map --- */
 
 typedef struct grazing_case {
   driven *d;
-  ric_family *family;
-  ric_grazing grazing;
+  grazed at;
   ric_grazing_map map;
 } grazing_case;
 
 static grazing_case graze(driven *d) {
   grazing_case k = {.d = d};
-  ric_error error;
-  double z[MOST], rest[MOST] = {0};
+  const double rest[MOST] = {0};
   const size_t n = ric_system_coordinates(d->system);
   const ric_family_problem problem = {.system = d->system,
                                       .motion = {.kind = RIC_MOTION_FORCED, .flow = ric_flow_options_default()},
                                       .set = set_force,
                                       .user = d,
                                       .parameters = 1};
-  ric_family_options options = ric_family_options_default();
-  options.multipliers = false;
-  options.curve.newton_tol = 1e-10;
-  options.curve.p_low = d->low;
-  options.curve.p_high = d->high;
-  options.curve.step = options.curve.step_most = 0.2;
-  assert_int_equal(ric_family_create(&problem, &options, &k.family, NULL), RIC_OK);
-  if (ric_family_start(k.family, d->low, rest, rest + n, NULL, two_pi / d->frequency, z, NULL, &error) != RIC_OK)
-    fail_msg("%s: %s", d->name, error.message);
-  assert_int_equal(ric_grazing_init(&k.grazing, ric_family_shooting(k.family), NULL), RIC_OK);
-  if (ric_grazing_find(k.family, z, d->low, NULL, &k.grazing, &error) != RIC_OK)
-    fail_msg("%s: %s", d->name, error.message);
-  assert_int_equal(ric_grazing_map_init(&k.map, 2 * n, NULL), RIC_OK);
-  if (ric_grazing_section(k.family, &k.grazing, NULL, &k.map, NULL, &error) != RIC_OK)
-    fail_msg("%s: %s", d->name, error.message);
+  const ric_family_options options = grazed_within(d->low, d->high, 0.2);
+  k.at = grazed_from(&problem, &options, d->low, rest, rest + n, NULL, two_pi / d->frequency);
+  grazed_find(&k.at);
+  k.map = grazed_map(&k.at, NULL);
   return k;
 }
 
 static void clear(grazing_case *k) {
   ric_grazing_map_clear(&k->map);
-  ric_grazing_clear(&k->grazing);
-  ric_family_destroy(&k->family);
+  grazed_clear(&k->at);
   ric_system_destroy(&k->d->system);
 }
 
 /* One period of the motion that begins at z beside the grazing one. */
 static void run_period(const grazing_case *k, const double *z, double *next) {
   const size_t size = k->map.size, n = size / 2;
-  const double *x = k->grazing.z, period = two_pi / k->d->frequency;
+  const double *x = k->at.grazing.z, period = two_pi / k->d->frequency;
   ric_trajectory *t = NULL;
   ric_run run;
   double begin[MOST];
@@ -189,16 +172,15 @@ static void the_map_is_the_motion_to_third_order(void **state) {
     double errors[4];
     for (int j = 0; j < 4; j++)
       errors[j] = left_out(&k, ldexp(0.02, -j));
-    print_message("[ %s: force %.9g, A_g = %.6g, left out %.3g %.3g %.3g %.3g ]\n", all[i].name, k.grazing.parameter,
-                  k.grazing.local.acceleration, errors[0], errors[1], errors[2], errors[3]);
+    print_message("[ %s: force %.9g, A_g = %.6g, left out %.3g %.3g %.3g %.3g ]\n", all[i].name, k.at.grazing.parameter,
+                  k.at.grazing.local.acceleration, errors[0], errors[1], errors[2], errors[3]);
     for (int j = 1; j < 4; j++)
       assert_true(errors[j - 1] / errors[j] > 6.5 && errors[j - 1] / errors[j] < 10);
     clear(&k);
   }
 }
 
-/* --- windows
- * ------------------------------------------------------------------------------------------------------------ */
+/* --- windows --- */
 
 enum { TRANSIENT = 4000, LONGEST = 40 };
 
@@ -242,13 +224,13 @@ static void windows_of_the_map_are_those_of_the_motion(void **state) {
     assert_int_equal(ric_grazing_window_find(&k.map, n + 1, &next, NULL), RIC_OK);
     assert_true(w.exists && next.exists);
     const double middle = sqrt(w.low.d * w.high.d), between = sqrt(w.low.d * next.high.d);
-    const double in = k.grazing.parameter - middle / k.grazing.slope;
-    const double out = k.grazing.parameter - between / k.grazing.slope;
-    assert_int_equal(period_of(&d, k.grazing.z, in), n);
-    const size_t beside = period_of(&d, k.grazing.z, out);
+    const double in = k.at.grazing.parameter - middle / k.at.grazing.slope;
+    const double out = k.at.grazing.parameter - between / k.at.grazing.slope;
+    assert_int_equal(period_of(&d, k.at.grazing.z, in), n);
+    const size_t beside = period_of(&d, k.at.grazing.z, out);
     print_message("[ window %zu: mu %.6g to %.6g; between it and the next: period %zu ]\n", n,
-                  -w.low.d / k.grazing.slope / k.grazing.parameter, -w.high.d / k.grazing.slope / k.grazing.parameter,
-                  beside);
+                  -w.low.d / k.at.grazing.slope / k.at.grazing.parameter,
+                  -w.high.d / k.at.grazing.slope / k.at.grazing.parameter, beside);
     assert_true(beside != n && beside != n + 1);
   }
   clear(&k);

@@ -8,8 +8,7 @@ static const double two_pi = 6.283185307179586;
 
 enum { NUMBERS = 4 };
 
-/* --- a motion with an impact of its own
- * ------------------------------------------------------------------------------- */
+/* --- a motion with an impact of its own --- */
 
 typedef struct two_masses {
   ric_lattice lattice;
@@ -204,8 +203,7 @@ static void elastic_touches_leave_the_energy_as_it_was(void **state) {
   ric_system_destroy(&problem.system);
 }
 
-/* --- x'' + x' + x = p_0 cos t between a wall at 1 and a floor that comes nearer
- * -------------------------------------- */
+/* --- x'' + x' + x = p_0 cos t between a wall at 1 and a floor that comes nearer --- */
 
 typedef struct between {
   ric_lattice lattice;

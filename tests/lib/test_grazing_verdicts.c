@@ -5,8 +5,7 @@
  * Where a c_i on the way is so small that this is below the y = sqrt(d) of the mu that are run, runs cannot tell. */
 #include "support.h"
 
-#include <ricochet/ricochet.h>
-
+#include "grazed.h"
 #include "scenario/random_source.h"
 
 enum { SYSTEMS = 200, N = 2, TRANSIENT = 300, KEPT = 200, COEFFICIENTS = 64 };
@@ -73,48 +72,36 @@ static double distance(driven *d, const ric_grazing *g, double beyond) {
 /* A random system at grazing: the smooth motion is proportional to the force. */
 typedef struct tried {
   driven d;
-  ric_family *family;
-  ric_grazing grazing;
+  grazed at;
   ric_grazing_criterion criterion;
   double stretch, c[COEFFICIENTS];
 } tried;
 
 static void try(tried *k, random_source *source) {
-  ric_error error;
-  ric_family_options options = ric_family_options_default();
-  ric_grazing_map map;
-  double z[2 * N], rest[2 * N] = {0};
+  const double rest[2 * N] = {0};
   make(&k->d, source);
   const ric_family_problem problem = {.system = k->d.system,
                                       .motion = {.kind = RIC_MOTION_FORCED, .flow = ric_flow_options_default()},
                                       .set = set,
                                       .user = &k->d,
                                       .parameters = 1};
-  options.multipliers = false;
-  options.curve.p_high = 1e4;
-  options.curve.step = options.curve.step_most = 100;
-  assert_int_equal(ric_family_create(&problem, &options, &k->family, NULL), RIC_OK);
-  assert_int_equal(ric_family_start(k->family, 1e-3, rest, rest + N, NULL, two_pi / k->d.frequency, z, NULL, NULL),
-                   RIC_OK);
-  assert_int_equal(ric_grazing_init(&k->grazing, ric_family_shooting(k->family), NULL), RIC_OK);
-  if (ric_grazing_find(k->family, z, 1e-3, NULL, &k->grazing, &error) != RIC_OK)
-    fail_msg("%s", error.message);
-  assert_int_equal(ric_grazing_map_init(&map, 2 * N, NULL), RIC_OK);
-  assert_int_equal(ric_grazing_section(k->family, &k->grazing, NULL, &map, NULL, NULL), RIC_OK);
+  const ric_family_options options = grazed_within(1e-3, 1e4, 100);
+  k->at = grazed_from(&problem, &options, 1e-3, rest, rest + N, NULL, two_pi / k->d.frequency);
+  grazed_find(&k->at);
+  ric_grazing_map map = grazed_map(&k->at, NULL);
   assert_int_equal(ric_grazing_criterion_find(&map, NULL, &k->criterion, k->c, COEFFICIENTS, NULL, NULL), RIC_OK);
   k->stretch = map.stretch;
   ric_grazing_map_clear(&map);
 }
 
 static void clear(tried *k) {
-  ric_grazing_clear(&k->grazing);
-  ric_family_destroy(&k->family);
+  grazed_clear(&k->at);
   ric_system_destroy(&k->d.system);
 }
 
 /* Whether the coefficients that decide are above what the smallest mu can show. */
 static bool runs_can_tell(const tried *k) {
-  const double penetration = sqrt(-k->grazing.slope * k->grazing.parameter * mu[1]);
+  const double penetration = sqrt(-k->at.grazing.slope * k->at.grazing.parameter * mu[1]);
   double least = INFINITY;
   for (size_t i = 0; i <= k->criterion.first_negative && i < COEFFICIENTS; i++)
     least = fmin(least, fabs(k->c[i]));
@@ -128,7 +115,7 @@ static void verdicts_are_what_runs_do_beyond_grazing(void **state) {
   for (int i = 0; i < SYSTEMS; i++) {
     tried k;
     try(&k, &source);
-    const double near = distance(&k.d, &k.grazing, mu[1]), far = distance(&k.d, &k.grazing, mu[0]);
+    const double near = distance(&k.d, &k.at.grazing, mu[1]), far = distance(&k.d, &k.at.grazing, mu[0]);
     const ric_grazing_verdict seen = near > 0.1 * far ? RIC_GRAZING_DISCONTINUOUS : RIC_GRAZING_CONTINUOUS;
     count[k.criterion.verdict]++;
     told += runs_can_tell(&k);

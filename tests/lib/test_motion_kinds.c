@@ -4,6 +4,7 @@
 
 #include "recorded.h"
 #include "shot.h"
+#include "van_der_pol.h"
 
 static ric_system *two_masses(void) {
   static const ric_spring links[3] = {{3, 0, 0, 0}, {1, 0, 0.1, 0}, {0, 0, 0, 0}};
@@ -71,34 +72,6 @@ static void conservative_motions_are_the_even_ones(void **state) {
     }
 }
 
-/* Van der Pol's oscillator before a wall. */
-static int rate(double t, const double *x, double *out, void *user) {
-  (void)t, (void)user;
-  out[0] = x[1];
-  out[1] = 0.5 * (1 - x[0] * x[0]) * x[1] - x[0];
-  return 0;
-}
-
-static int gap(double t, const double *x, size_t obstacle, double *h, void *user) {
-  (void)t, (void)obstacle;
-  *h = *(const double *)user - x[0];
-  return 0;
-}
-
-static int bounce(double t, const double *x, size_t obstacle, double *after, void *user) {
-  (void)t, (void)obstacle, (void)user;
-  after[0] = x[0];
-  after[1] = -0.8 * x[1];
-  return 0;
-}
-
-static ric_system *van_der_pol(double *wall) {
-  const ric_first_order model = {.states = 2, .obstacles = 1, .rate = rate, .gap = gap, .impact = bounce, .user = wall};
-  ric_system *system = NULL;
-  assert_int_equal(ric_system_create_first_order(&model, &system, NULL), RIC_OK);
-  return system;
-}
-
 /* 6.3806... for mu = 0.5: the period of the cycle from a long run, by its crossings. */
 static void limit_cycles_are_those_that_runs_tend_to(void **state) {
   (void)state;
@@ -110,7 +83,7 @@ static void limit_cycles_are_those_that_runs_tend_to(void **state) {
                                     .count = count,
                                     .flow = {.tolerance = 1e-13, .longest_step = INFINITY}};
     double x[2] = {count ? 1.5 : 2, count ? -0.6 : 0}, time = 0, settled[2];
-    shot s = shot_at(van_der_pol(&wall[count]), &problem);
+    shot s = shot_at(van_der_pol_system(&wall[count]), &problem);
     shot_guess(&s, x, NULL, &time, count ? 5 : 6.4);
     shot_solve(&s);
     assert_int_equal(s.orbit.outcome, RIC_ADMISSIBLE);
