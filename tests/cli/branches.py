@@ -1,7 +1,9 @@
 """What tests of branches share: studies, running them, reading their results."""
 
+import signal
+
 import h5py
-from program import USAGE, names, words_of, write
+from program import STOPPED, USAGE, assert_same, names, run_attributes, tasks_in, wait_until, words_of, write
 
 BASE = """kind: branch
 title: a ring of six
@@ -54,3 +56,36 @@ def refuse(ricochet, folder, cases, base=BASE):
             place = f"s.yaml:{line}: " if line else "s.yaml: "
             ricochet(command, "s.yaml", cwd=folder).expect_refused(USAGE, place, *phrases)
         assert names(folder) == ["s.yaml"]
+
+
+def _stop(ricochet, folder, text, how):
+    write(folder, "s.yaml", text)
+    process = ricochet.start_run("s.yaml", cwd=folder, ranks=2)
+    wait_until(lambda: tasks_in(folder / "s.h5.ckpt") >= 4 or (folder / "s.h5").exists(), "records")
+    if process.poll() is None:
+        process.send_signal(how)
+    return ricochet.end(process)
+
+
+def equal_for_all_ranks_and_after_stops(ricochet, folder, text, ranks):
+    """Runs a study of 5 tasks or more without mpirun, with numbers of ranks, and stopped and resumed with the last of
+    them. Returns the first result."""
+    paths = []
+    for count in (0, *ranks):
+        own = folder / str(count)
+        own.mkdir()
+        write(own, "s.yaml", text)
+        ricochet.run("s.yaml", cwd=own, ranks=count).expect_done()
+        paths.append(own / "s.h5")
+        assert_same(paths[0], paths[-1])
+    for name, how in (("stopped", signal.SIGUSR1), ("killed", signal.SIGKILL)):
+        own = folder / name
+        own.mkdir()
+        result = _stop(ricochet, own, text, how)
+        if how == signal.SIGUSR1:
+            result.expect(STOPPED)
+        done = tasks_in(own / "s.h5.ckpt")
+        ricochet.run("s.yaml", "--resume", cwd=own, ranks=ranks[-1]).expect_done()
+        assert how == signal.SIGKILL or run_attributes(own / "s.h5")["tasks_resumed"] == done
+        assert_same(paths[0], own / "s.h5", ("heap_checksums",))  # addresses, which move with the command line
+    return paths[0]

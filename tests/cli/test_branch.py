@@ -3,16 +3,13 @@ on ranks or on stops."""
 
 import csv
 import io
-import signal
 
 import h5py
 import numpy as np
 import program
 import xarray
-from branches import BASE, WALL, read, refuse, rows, run
-from program import (
-    STOPPED, USAGE, assert_same, run_attributes, study, sweep, tasks_in, test, wait_until, words_of, write,
-)
+from branches import BASE, WALL, equal_for_all_ranks_and_after_stops, read, refuse, rows, run
+from program import STOPPED, USAGE, study, sweep, test, words_of, write
 
 DUFFING = """kind: branch
 model: {type: chain, particles: 1, ends: free, gamma: 0, floor: null, cubic: 1, damping: 0.1, force: 0.3}
@@ -354,35 +351,9 @@ def impacts_double_their_period_again_and_again(ricochet, folder):
     assert set(stable[alone & (at < first[0])]) == {"stable"} and set(stable[alone & (at > first[0])]) == {"unstable"}
 
 
-def stopped(ricochet, folder, how):
-    write(folder, "s.yaml", GRID)
-    process = ricochet.start_run("s.yaml", cwd=folder, ranks=2)
-    wait_until(lambda: tasks_in(folder / "s.h5.ckpt") >= 4 or (folder / "s.h5").exists(), "records")
-    if process.poll() is None:
-        process.send_signal(how)
-    return ricochet.end(process)
-
-
 @test
 def branches_are_equal_for_all_ranks_and_after_stops(ricochet, folder):
-    paths = []
-    for ranks in (0, 1, 3):
-        own = folder / str(ranks)
-        own.mkdir()
-        write(own, "s.yaml", GRID)
-        ricochet.run("s.yaml", cwd=own, ranks=ranks).expect_done()
-        paths.append(own / "s.h5")
-        assert_same(paths[0], paths[-1])
-    for name, how in (("stopped", signal.SIGUSR1), ("killed", signal.SIGKILL)):
-        own = folder / name
-        own.mkdir()
-        result = stopped(ricochet, own, how)
-        if how == signal.SIGUSR1:
-            result.expect(STOPPED)
-        done = tasks_in(own / "s.h5.ckpt")
-        ricochet.run("s.yaml", "--resume", cwd=own, ranks=3).expect_done()
-        assert how == signal.SIGKILL or run_attributes(own / "s.h5")["tasks_resumed"] == done
-        assert_same(paths[0], own / "s.h5", ("heap_checksums",))  # addresses, which move with the command line
+    equal_for_all_ranks_and_after_stops(ricochet, folder, GRID, (1, 3))
 
 
 @test

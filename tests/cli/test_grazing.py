@@ -3,14 +3,13 @@ that they do not depend on ranks or on stops."""
 
 import csv
 import io
-import signal
 
 import h5py
 import numpy as np
 import program
 import xarray
-from branches import refuse, rows, run
-from program import STOPPED, USAGE, assert_same, run_attributes, study, tasks_in, test, wait_until, words_of, write
+from branches import equal_for_all_ranks_and_after_stops, refuse, rows, run
+from program import STOPPED, USAGE, study, test, words_of, write
 
 ONE = """kind: grazing
 model: {type: chain, particles: 1, ends: free, gamma: 0, floor: null, wall: 1, restitution: 0.8, damping: 3, force: 1}
@@ -324,40 +323,13 @@ GRID = TRACED.replace("low: 0.3, high: 3, step_most: 0.01", "low: 0.6, high: 1.2
     "sweep: {parameter: model.damping, from: 0.05, to: 0.5, points: 24}\n")
 
 
-def stopped(ricochet, folder, how):
-    write(folder, "s.yaml", GRID)
-    process = ricochet.start_run("s.yaml", cwd=folder, ranks=2)
-    wait_until(lambda: tasks_in(folder / "s.h5.ckpt") >= 4 or (folder / "s.h5").exists(), "records")
-    if process.poll() is None:
-        process.send_signal(how)
-    return ricochet.end(process)
-
-
 @test
 def results_are_equal_for_all_ranks_and_after_stops(ricochet, folder):
-    paths = []
-    for ranks in (0, 1, 2):
-        own = folder / str(ranks)
-        own.mkdir()
-        write(own, "s.yaml", GRID)
-        ricochet.run("s.yaml", cwd=own, ranks=ranks).expect_done()
-        paths.append(own / "s.h5")
-        assert_same(paths[0], paths[-1])
-    found = read(paths[0])
+    found = read(equal_for_all_ranks_and_after_stops(ricochet, folder, GRID, (1, 2)))
     for task, damping in enumerate(np.linspace(0.05, 0.5, 24)):
         curve = rows(found, "curve", task)
         w = found["curve_second"][curve]
         assert np.allclose(found["curve_parameter"][curve], np.hypot(1 - w**2, damping * w), rtol=1e-8)
-    for name, how in (("stopped", signal.SIGUSR1), ("killed", signal.SIGKILL)):
-        own = folder / name
-        own.mkdir()
-        result = stopped(ricochet, own, how)
-        if how == signal.SIGUSR1:
-            result.expect(STOPPED)
-        done = tasks_in(own / "s.h5.ckpt")
-        ricochet.run("s.yaml", "--resume", cwd=own, ranks=2).expect_done()
-        assert how == signal.SIGKILL or run_attributes(own / "s.h5")["tasks_resumed"] == done
-        assert_same(paths[0], own / "s.h5", ("heap_checksums",))  # addresses, which move with the command line
 
 
 @test
