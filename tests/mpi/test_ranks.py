@@ -114,7 +114,7 @@ def a_rank_with_a_long_task_does_not_hold_up_the_others(ricochet, folder):
     the machine had two cores for us, which two runs side by side tell."""
     write(folder, "s.yaml", study(particles=2000000, orbit="states: false", sweep=sweep(2, 0.1, 0.11)))
     failures = []
-    for _ in range(4):
+    for _ in range(8):
         one, two = seconds_of(ricochet, folder, 1), seconds_of(ricochet, folder, 1, ranks=2, mpi=OVER_TCP)
         if two < 0.8 * one:
             return
