@@ -6,6 +6,7 @@
 
 /* --- recurrence ------------------------------------------------------------------------------------------------ */
 
+#ifdef RIC_WIDE
 #define LANE     wide_lanes
 #define LANES    WIDE
 #define NAMED(f) f##_wide
@@ -13,6 +14,7 @@
 #undef LANE
 #undef LANES
 #undef NAMED
+#endif
 
 #define LANE     ric_lanes
 #define LANES    RIC_LANES
@@ -30,19 +32,36 @@
 #undef LANES
 #undef NAMED
 
-/* A lane moves the same way in any width. */
-RIC_VECTORISED_WIDE static void transport(lattice_variation *v, const tangents *d) {
-  size_t count;
-  for (size_t first = 0; first < d->columns; first += count) {
-    size_t left = d->columns - first;
-    count = left < WIDE ? left : WIDE;
-    if (left > RIC_LANES)
-      move_wide(v, d, first, count);
-    else if (left > 1)
-      move_half(v, d, first, count);
-    else
-      move_one(v, d, first, count);
+/* The columns from `first` on. A lane moves the same way in any width. */
+RIC_VECTORISED static void move_by_four(lattice_variation *v, const tangents *d, size_t first) {
+  while (first + 1 < d->columns) {
+    const size_t left = d->columns - first, count = left < RIC_LANES ? left : RIC_LANES;
+    move_half(v, d, first, count);
+    first += count;
   }
+  for (; first < d->columns; first++)
+    move_one(v, d, first, 1);
+}
+
+#ifdef RIC_WIDE
+/* As many as fill more than half of the lanes. @returns the first that is left */
+RIC_WIDE static size_t move_by_eight(lattice_variation *v, const tangents *d, size_t first) {
+  while (first + RIC_LANES < d->columns) {
+    const size_t left = d->columns - first, count = left < WIDE ? left : WIDE;
+    move_wide(v, d, first, count);
+    first += count;
+  }
+  return first;
+}
+#endif
+
+static void transport(lattice_variation *v, const tangents *d) {
+  size_t first = 0;
+#ifdef RIC_WIDE
+  if (ric_has_wide())
+    first = move_by_eight(v, d, first);
+#endif
+  move_by_four(v, d, first);
 }
 
 static void set_still(lattice_variation *v, const lattice_contacts *held, bool still) {

@@ -1,20 +1,27 @@
 /* Loops over particles for wide vector registers: internal to the library.
  *
- * A static function marked RIC_VECTORISED is compiled twice and the processor decides, one marked RIC_VECTORISED_WIDE,
- * which works on more numbers side by side, three times. All variants compute the same operations in the same order,
- * without fused multiplications, so results are the same bits. */
+ * A static function marked RIC_VECTORISED is compiled twice and the processor decides. Both variants compute the same
+ * operations in the same order, without fused multiplications, so results are the same bits. One marked RIC_WIDE, where
+ * there is such a thing, is for processors of which ric_has_wide() says that they work on eight numbers at a time:
+ * types of that size are slow on all others. */
 #ifndef RICOCHET_VECTORISED_H
 #define RICOCHET_VECTORISED_H
 
 #if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && defined(__gnu_linux__) &&                       \
     !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-#define RIC_VECTORISED      __attribute__((target_clones("avx2", "default")))
-#define RIC_VECTORISED_WIDE __attribute__((target_clones("avx512f", "avx2", "default")))
-#define RIC_INLINE          static inline __attribute__((always_inline)) /* so that a variant holds all it calls */
+#define RIC_VECTORISED __attribute__((target_clones("avx2", "default")))
+#define RIC_WIDE       __attribute__((target("avx512f")))
+#define RIC_INLINE     static inline __attribute__((always_inline)) /* so that a variant holds all it calls */
 #else
 #define RIC_VECTORISED
-#define RIC_VECTORISED_WIDE
 #define RIC_INLINE static inline
+#endif
+
+#ifdef RIC_WIDE
+#include <stdbool.h>
+static inline bool ric_has_wide(void) {
+  return __builtin_cpu_supports("avx512f");
+}
 #endif
 
 /* Numbers side by side for sums that are not loops over particles: compilers do not find those. Operators act on every
