@@ -10,6 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "model/number_block.h"
 #include "section.h"
 
 /* Flows that cross a section at an angle below it do not cross it. */
@@ -26,24 +27,19 @@ size_t ric_grazing_coordinates(const ric_grazing *g, const ric_shooting *s) {
   return s->arcs.kind == RIC_MOTION_FORCED ? g->numbers : g->numbers - 1;
 }
 
-static double *take(double **store, size_t count) {
-  double *taken = *store;
-  *store += count;
-  return taken;
-}
-
 static ric_status allocate(section *k, ric_error *error) {
   const size_t n = k->numbers, s = k->state;
-  double *store = k->block = calloc(n * n + n + (4 + k->size) * s, sizeof *store);
-  if (!store)
+  size_t used = 0;
+  double *block = k->block = calloc(n * n + n + (4 + k->size) * s, sizeof *block);
+  if (!block)
     return ric_fail(error, RIC_ENOMEM, "no memory for a section of %zu numbers", s);
-  k->matrix = take(&store, n * n);
-  k->x = take(&store, n);
-  k->normal = take(&store, s);
-  k->rates = take(&store, s);
-  k->from = take(&store, s);
-  k->goes = take(&store, s);
-  k->basis = take(&store, k->size * s);
+  k->matrix = number_block_take(block, &used, n * n);
+  k->x = number_block_take(block, &used, n);
+  k->normal = number_block_take(block, &used, s);
+  k->rates = number_block_take(block, &used, s);
+  k->from = number_block_take(block, &used, s);
+  k->goes = number_block_take(block, &used, s);
+  k->basis = number_block_take(block, &used, k->size * s);
   return RIC_OK;
 }
 

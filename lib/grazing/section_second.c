@@ -12,6 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "model/number_block.h"
 #include "section.h"
 
 enum { TRIALS = 7, MOST_APPROACHES = 4, MOST_CROSSINGS = 20 };
@@ -42,12 +43,6 @@ typedef struct second {
   double *block;
 } second;
 
-static double *take(double **store, size_t count) {
-  double *taken = *store;
-  *store += count;
-  return taken;
-}
-
 static ric_status open(second *w, ric_error *error) {
   const section *k = w->k;
   const size_t n = k->numbers, size = k->size;
@@ -55,17 +50,18 @@ static ric_status open(second *w, ric_error *error) {
   const ric_flow_options flow = k->f->problem.motion.flow;
   ric_trajectory_options motion = ric_trajectory_options_default();
   ric_bypass_options bypass = ric_bypass_options_default();
-  double *store = w->block = calloc(4 * n + k->state + (2 + TRIALS) * size, sizeof *store);
-  if (!store)
+  size_t used = 0;
+  double *block = w->block = calloc(4 * n + k->state + (2 + TRIALS) * size, sizeof *block);
+  if (!block)
     return ric_fail(error, RIC_ENOMEM, "no memory for motions of %zu numbers", n);
-  w->x = take(&store, n);
-  w->home = take(&store, n);
-  w->normal = take(&store, n);
-  w->rate = take(&store, n);
-  w->difference = take(&store, k->state);
-  w->smooth = take(&store, size);
-  w->rows = take(&store, TRIALS * size);
-  w->best = take(&store, size);
+  w->x = number_block_take(block, &used, n);
+  w->home = number_block_take(block, &used, n);
+  w->normal = number_block_take(block, &used, n);
+  w->rate = number_block_take(block, &used, n);
+  w->difference = number_block_take(block, &used, k->state);
+  w->smooth = number_block_take(block, &used, size);
+  w->rows = number_block_take(block, &used, TRIALS * size);
+  w->best = number_block_take(block, &used, size);
   motion.flow = bypass.flow = flow;
   motion.poll = k->f->problem.motion.poll;
   bypass.reach = k->g->period / 4;

@@ -49,8 +49,8 @@ typedef struct ric_grazing_options {
 
 RIC_API ric_grazing_options ric_grazing_options_default(void);
 
-/** Follows a family from a solution until it grazes, and makes the grazing point exact: the gap's minimum is zero to
- *  rounding.
+/** Follows a family from a solution until it grazes, and makes the
+ * grazing point exact: the gap's minimum is zero to rounding.
  *  @param family  of motions that are not even; its options decide the walk: where to, and how far
  *  @param z  [unknowns] solution at `parameter`; changed
  *  @param options  NULL for the defaults
@@ -104,9 +104,10 @@ typedef struct ric_grazing_curve_point {
  *  @param from  a grazing motion of it
  *  @param options  of the curve, whose parameter is the second one; NULL for those of the family
  *  @param count  of coefficients, at most RIC_GRAZING_CURVE_COEFFICIENTS
- *  @param seen  sees every point; non-zero ends the walk. Where there is no verdict, for want of a minimum of the gap
- * or of eigenvalues, the walk ends, and its run says why
- *  @returns as ric_family_trace; RIC_EINVAL. */
+ *  @param seen  sees every point; non-zero ends the walk. Where a step comes to no verdict, for want of a minimum of
+ *               the gap or of eigenvalues, the walk ends, and its run says why
+ *  @returns as ric_family_trace, and as ric_grazing_section and ric_grazing_criterion_find where a point that is to be
+ *           shown has none; RIC_EINVAL. */
 RIC_API ric_status ric_grazing_trace(ric_family *family, const ric_grazing *from, const ric_curve_options *options,
                                      size_t count, int (*seen)(const ric_grazing_curve_point *point, void *user),
                                      void *user, ric_curve_run *run, ric_error *error);
