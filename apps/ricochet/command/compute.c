@@ -18,6 +18,7 @@ typedef struct rank {
   uint64_t *counts;               /* [capacity][tails] */
   records tails[KIND_MOST_TAILS]; /* of all its tasks */
   uint64_t capacity, done;
+  uint64_t batch, unit; /* most tasks evaluated at once; tasks of which chunks are made: one, or a whole batch */
   progress *progress;
   double sync_interval, synced;
 } rank;
@@ -27,7 +28,7 @@ static int poll_all(void *user) {
   rank *r = user;
   if (stop_asked() != STOP_NONE)
     return 1;
-  progress_show(r->progress, r->progress->resumed + scheduler_taken(r->scheduler));
+  progress_show(r->progress, r->progress->resumed + scheduler_taken(r->scheduler) * r->unit);
   return scheduler_poll(r->scheduler);
 }
 
@@ -46,14 +47,14 @@ static int grow(rank *r, uint64_t tasks, message *why) {
   return 0;
 }
 
-/* Evaluates a task as the `at`-th of the run at hand. @returns 0, or -1 when it was stopped */
-static int evaluate_task(rank *r, uint64_t task, uint64_t at) {
+/* Evaluates tasks as those from the `at`-th on of the run at hand. @returns 0, or -1 when it was stopped */
+static int evaluate_batch(rank *r, task_range tasks, uint64_t at) {
   uint64_t before[KIND_MOST_TAILS], *counts = r->counts + at * r->plan->tail_count;
   for (size_t k = 0; k < r->plan->tail_count; k++)
     before[k] = r->tails[k].count;
-  int stopped =
-      poll_all(r) || r->kind->evaluate(r->worker, r->plan, task, r->rows + at * r->plan->rows.row_bytes, r->tails) != 0;
-  for (size_t k = 0; k < r->plan->tail_count; k++) {
+  int stopped = poll_all(r) ||
+                r->kind->evaluate(r->worker, r->plan, tasks, r->rows + at * r->plan->rows.row_bytes, r->tails) != 0;
+  for (size_t k = 0; k < r->plan->tail_count; k++) { /* of the one task */
     if (stopped)
       records_cut(&r->tails[k], before[k]);
     counts[k] = r->tails[k].count - before[k];
@@ -78,16 +79,18 @@ static int append(rank *r, uint64_t first, uint64_t count, message *why) {
   return code;
 }
 
-/* Consecutive tasks, appended as one record; as several when their tails are large, and fewer when the run is stopped
- * in between. */
+/* Consecutive tasks, whole units of them, appended as one record; as several when their tails are large, and fewer when
+ * the run is stopped in between. */
 static int evaluate_run(rank *r, uint64_t first, uint64_t count, int *stopped, message *why) {
   int code = grow(r, count, why);
   uint64_t finished = 0;
-  for (uint64_t i = 0; !code && !*stopped && i < count; i++) {
-    if (evaluate_task(r, first + finished, finished) != 0)
+  for (uint64_t i = 0; !code && !*stopped && i < count;) {
+    const uint64_t batch = count - i < r->batch ? count - i : r->batch;
+    if (evaluate_batch(r, (task_range){first + finished, batch}, finished) != 0)
       *stopped = 1;
     else
-      finished++;
+      finished += batch;
+    i += batch;
     if (finished == 0 || tail_bytes(r) < MOST_BYTES)
       continue;
     code = append(r, first, finished, why);
@@ -117,14 +120,14 @@ static int evaluate_chunk(rank *r, uint64_t first, uint64_t count, int *stopped,
   return checkpoint_sync(r->checkpoint, why);
 }
 
-/* Largest chunk whose rows stay below the limit. */
-static uint64_t largest_chunk(const kind_plan *plan) {
-  uint64_t most = MOST_BYTES / plan->rows.row_bytes;
+/* Largest chunk whose rows stay below the limit, in units. */
+static uint64_t largest_chunk(const rank *r) {
+  uint64_t most = MOST_BYTES / r->plan->rows.row_bytes / r->unit;
   return most > 0 ? most : 1;
 }
 
 static int work(rank *r, message *why) {
-  uint64_t first, size = 0, most = largest_chunk(r->plan);
+  uint64_t first, size = 0, most = largest_chunk(r);
   double seconds = 0;
   int code = 0, stopped = 0;
   while (!code && !stopped) {
@@ -133,7 +136,7 @@ static int work(rank *r, message *why) {
     if (size == 0)
       break;
     double began = clock_seconds();
-    code = evaluate_chunk(r, first, size, &stopped, why);
+    code = evaluate_chunk(r, first * r->unit, size * r->unit, &stopped, why);
     seconds = clock_seconds() - began;
   }
   if (code || stopped)
@@ -144,14 +147,13 @@ static int work(rank *r, message *why) {
 }
 
 static int start(rank *r, const study *s, message *why) {
-  uint64_t tasks = study_tasks(s);
+  uint64_t missing = study_tasks(s) - checkpoint_done(r->checkpoint);
   int code = r->kind->open(s, (ric_poll){.call = poll_all, .user = r}, &r->worker, why);
   if (!code)
     code = checkpoint_begin(r->checkpoint, ranks_rank(), why);
   code = ranks_agree(code, why);
   if (!code)
-    code =
-        ranks_agree(scheduler_create(MPI_COMM_WORLD, tasks - checkpoint_done(r->checkpoint), &r->scheduler, why), why);
+    code = ranks_agree(scheduler_create(MPI_COMM_WORLD, missing / r->unit, &r->scheduler, why), why);
   return code;
 }
 
@@ -160,6 +162,8 @@ int compute(const study *s, const kind *k, const kind_plan *plan, checkpoint *c,
   progress p;
   rank r = {.plan = plan, .kind = k, .checkpoint = c, .progress = &p, .sync_interval = o->checkpoint_seconds};
   *result = (compute_result){.stopped = STOP_NONE};
+  r.batch = plan->batch > 0 ? plan->batch : 1;
+  r.unit = plan->whole ? r.batch : 1;
   for (size_t i = 0; i < plan->tail_count; i++)
     r.tails[i].record_bytes = plan->tails[i].records.row_bytes;
   progress_begin(&p, ranks_rank() == 0 ? o->progress : PROGRESS_NEVER, study_tasks(s), checkpoint_done(c));

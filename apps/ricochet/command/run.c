@@ -109,12 +109,18 @@ static int open_checkpoint(run *r, message *why) {
   return code;
 }
 
-/* Rows for the writer, from the checkpoint; counts outcomes on the way. */
+/* Rows from the checkpoint. */
+static int read_done(void *user, uint64_t first, uint64_t count, unsigned char *rows, message *why) {
+  const run *r = user;
+  stop_leave_by_signal();
+  return checkpoint_read(r->checkpoint, first, count, rows, why);
+}
+
+/* Rows for the writer; counts outcomes on the way. */
 static int read_rows(void *user, uint64_t first, uint64_t count, unsigned char *rows, message *why) {
   run *r = user;
   const column *outcome = table_column(&r->plan.rows, r->plan.outcome);
-  stop_leave_by_signal();
-  int code = checkpoint_read(r->checkpoint, first, count, rows, why);
+  int code = read_done(r, first, count, rows, why);
   for (uint64_t i = 0; !code && i < count; i++)
     r->outcomes[rows[i * r->plan.rows.row_bytes + outcome->offset] % 64]++;
   return code;
@@ -246,8 +252,9 @@ static int assemble(run *r, message *why) {
   code = ranks_agree(checkpoint_count_entries(r->checkpoint, why), why);
   if (!code)
     code = agree_on_entries(r, why);
+  const row_source done = {.read = read_done, .user = r};
   if (!code)
-    code = ranks_agree(r->kind->extra(r->study, (ric_poll){.call = poll_stop}, &r->extra, why), why);
+    code = ranks_agree(r->kind->extra(r->study, &r->plan, &done, (ric_poll){.call = poll_stop}, &r->extra, why), why);
   if (!code)
     code = write_result(r, why);
   ranks_sum(r->outcomes, 64);

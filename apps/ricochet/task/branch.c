@@ -92,12 +92,12 @@ static void fill_row(const branch_result *result, const table *t, unsigned char 
   row_put_integer(row, table_column(t, "jacobians"), (long long)result->jacobians);
 }
 
-static int branch_evaluate(worker *w, const kind_plan *plan, uint64_t task, unsigned char *row, records *tails) {
+static int branch_evaluate(worker *w, const kind_plan *plan, task_range tasks, unsigned char *row, records *tails) {
   branch_result result = {0};
   uint64_t before[BRANCH_TAILS_WITH_CURVES];
   for (size_t k = 0; k < plan->tail_count; k++)
     before[k] = tails[k].count;
-  study_values_at(w->task.values, task);
+  study_values_at(w->task.values, tasks.first);
   ric_status status = follow(w, plan, tails, &result);
   branch_family_close(&w->task.family);
   if (status == RIC_ESTOPPED)

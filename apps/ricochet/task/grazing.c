@@ -82,12 +82,12 @@ static ric_status compute(family_task *t, grazing_task *g, records *tails) {
   return status;
 }
 
-static int grazing_evaluate(worker *w, const kind_plan *plan, uint64_t task, unsigned char *row, records *tails) {
+static int grazing_evaluate(worker *w, const kind_plan *plan, task_range tasks, unsigned char *row, records *tails) {
   grazing_task g = {.b = &w->task.family, .plan = plan, .row = row, .outcome = GRAZING_FAILED};
   uint64_t before[GRAZING_TAILS];
   for (size_t k = 0; k < plan->tail_count; k++)
     before[k] = tails[k].count;
-  study_values_at(w->task.values, task);
+  study_values_at(w->task.values, tasks.first);
   grazing_clear_row(&plan->rows, row);
   const ric_status status = compute(&w->task, &g, tails);
   branch_family_close(&w->task.family);

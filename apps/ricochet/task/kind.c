@@ -19,8 +19,11 @@ void kind_lay_out_tail(tail *to, const char *group, const char *row_axis, const 
   table_lay_out(&to->records);
 }
 
-int kind_no_extra(const study *s, ric_poll poll, extra_rows *extra, message *why) {
+int kind_no_extra(const study *s, const kind_plan *plan, const row_source *done, ric_poll poll, extra_rows *extra,
+                  message *why) {
   (void)s;
+  (void)plan;
+  (void)done;
   (void)poll;
   (void)why;
   *extra = (extra_rows){0};

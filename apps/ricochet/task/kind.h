@@ -6,6 +6,7 @@
 #define RICOCHET_APP_KIND_H
 
 #include <ricochet/ricochet.h>
+#include <stdbool.h>
 #include <stdint.h>
 
 #include "../study/study.h"
@@ -25,12 +26,25 @@ typedef struct kind_plan {
   table rows; /* a row per task */
   tail tails[KIND_MOST_TAILS];
   size_t tail_count;
+  uint64_t batch;      /* most tasks that are evaluated at once; 0: one */
+  bool whole;          /* so many always: tasks of a batch follow from one another. They have no tails then */
   double memory;       /* bytes that one rank computes with */
   const char *outcome; /* name of the column whose words are counted at the end */
 } kind_plan;
 
 /** Evaluates tasks; one per rank. */
 typedef struct worker worker;
+
+/** Tasks that follow one another. */
+typedef struct task_range {
+  uint64_t first, count;
+} task_range;
+
+/** Reads the rows of finished tasks, [count][row_bytes]. @returns 0 or EXIT_FILES */
+typedef struct row_source {
+  int (*read)(void *user, uint64_t first, uint64_t count, unsigned char *rows, message *why);
+  void *user;
+} row_source;
 
 /** Rows of a table that belongs to the study as a whole. */
 typedef struct extra_rows {
@@ -46,14 +60,19 @@ typedef struct kind {
   int (*plan)(const study *s, kind_plan *plan, message *why);
   /** @param poll  handed to the library; non-zero stops a task */
   int (*open)(const study *s, ric_poll poll, worker **out, message *why);
-  /** Fills the row of a task and adds its records.
-   *  @param row  [plan->rows.row_bytes], at a multiple of 8 bytes, of any content
-   *  @param tails  [plan->tail_count], behind the records of earlier tasks
-   *  @returns 0, or -1 when the poll stopped it; records that it has added by then are no one's */
-  int (*evaluate)(worker *w, const kind_plan *plan, uint64_t task, unsigned char *row, records *tails);
+  /** Fills the rows of a batch of tasks, of one unless the plan says more, and adds its records. What a row holds does
+   *  not depend on the batch that its task is in.
+   *  @param rows  [tasks.count][plan->rows.row_bytes], at a multiple of 8 bytes, of any content
+   *  @param tails  [plan->tail_count], behind the records of earlier tasks; plans with tails have batches of one
+   *  @returns 0, or -1 when the poll stopped it; rows and records that it has made by then are no one's */
+  int (*evaluate)(worker *w, const kind_plan *plan, task_range tasks, unsigned char *rows, records *tails);
   void (*close)(worker **w);
-  /** The study's extra table; a count of 0 and no columns when there is none. EXIT_STOPPED when the poll stopped it. */
-  int (*extra)(const study *s, ric_poll poll, extra_rows *extra, message *why);
+  /** The study's extra table, made after all tasks, on every rank alike; a count of 0 and no columns when there is
+   * none.
+   *  @param done  rows of all tasks
+   *  @returns 0, EXIT_RUN, EXIT_FILES; EXIT_STOPPED when the poll stopped it */
+  int (*extra)(const study *s, const kind_plan *plan, const row_source *done, ric_poll poll, extra_rows *extra,
+               message *why);
 } kind;
 
 /** Kind of a study, by its name and its method; every kind that the schema accepts is here. */
@@ -64,7 +83,8 @@ void kind_lay_out_tail(tail *to, const char *group, const char *row_axis, const 
                        const column *columns, size_t count, const table_axis *axes, size_t axis_count);
 
 /** An `extra` for kinds without such a table. */
-int kind_no_extra(const study *s, ric_poll poll, extra_rows *extra, message *why);
+int kind_no_extra(const study *s, const kind_plan *plan, const row_source *done, ric_poll poll, extra_rows *extra,
+                  message *why);
 
 extern const kind kind_orbits;
 extern const kind kind_orbits_shooting;

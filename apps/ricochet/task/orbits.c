@@ -160,10 +160,10 @@ static const char *reason_of(const worker *w) {
   return w->orbit.reason[0] ? w->orbit.reason : w->verification.reason;
 }
 
-static int orbits_evaluate(worker *w, const kind_plan *plan, uint64_t task, unsigned char *row, records *tails) {
+static int orbits_evaluate(worker *w, const kind_plan *plan, task_range tasks, unsigned char *row, records *tails) {
   ric_error error = {0};
   (void)tails;
-  study_values_at(w->values, task);
+  study_values_at(w->values, tasks.first);
   chain_model_read(&w->model, w->values);
   ric_status status = solve(w, &error);
   if (status == RIC_ESTOPPED)

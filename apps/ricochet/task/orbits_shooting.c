@@ -237,10 +237,10 @@ static void fill_row(const worker *w, const table *t, unsigned char *row) {
   row_put_number(row, table_column(t, "ritz_defect"), w->ritz.defect);
 }
 
-static int shooting_evaluate(worker *w, const kind_plan *plan, uint64_t task, unsigned char *row, records *tails) {
+static int shooting_evaluate(worker *w, const kind_plan *plan, task_range tasks, unsigned char *row, records *tails) {
   ric_error error = {0};
   (void)tails;
-  study_values_at(w->values, task);
+  study_values_at(w->values, tasks.first);
   ric_status status = solve(w, value_number(w->values, KEY_ORBIT_PERIOD, 0), &error);
   if (status != RIC_OK && status != RIC_ESTOPPED)
     ric_orbit_fail(&w->orbit, error.message);

@@ -340,7 +340,10 @@ static int list_points(const study *s, const study_values *v, ric_poll poll, ext
                 error.message);
 }
 
-int orbits_special(const study *s, ric_poll poll, extra_rows *extra, message *why) {
+int orbits_special(const study *s, const kind_plan *plan, const row_source *done, ric_poll poll, extra_rows *extra,
+                   message *why) {
+  (void)plan;
+  (void)done;
   study_values *v = study_values_create(s);
   *extra = (extra_rows){0};
   if (!v)

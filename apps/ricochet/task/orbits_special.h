@@ -8,6 +8,7 @@
 int orbits_special_plan(const study *s, const study_values *v, message *why);
 
 /** The list, ordered by parameter; empty unless the study asks for it. */
-int orbits_special(const study *s, ric_poll poll, extra_rows *extra, message *why);
+int orbits_special(const study *s, const kind_plan *plan, const row_source *done, ric_poll poll, extra_rows *extra,
+                   message *why);
 
 #endif

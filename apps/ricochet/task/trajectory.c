@@ -291,10 +291,10 @@ static void finish_row(const table *t, const verdict *found, const ric_run *did,
   row_put_integer(row, table_column(t, "force_evaluations"), (long long)did->flow.force_evaluations);
 }
 
-static int trajectory_evaluate(worker *w, const kind_plan *plan, uint64_t task, unsigned char *row, records *tails) {
+static int trajectory_evaluate(worker *w, const kind_plan *plan, task_range tasks, unsigned char *row, records *tails) {
   verdict found = {.outcome = RIC_RUN_COMPLETED};
   ric_run did = {.energy_start = NAN, .energy_end = NAN, .impact_loss = NAN};
-  study_values_at(w->values, task);
+  study_values_at(w->values, tasks.first);
   sight seen = begin_row(w, plan, row, tails);
   if (read_start(w, &found) == RIC_ESTOPPED)
     return -1;
