@@ -5,7 +5,7 @@
 enum { NARROW = 4 /* particles for which half of a row does */ };
 
 bool lattice_few_takes(size_t count, unsigned terms) {
-  return count <= FEW && (terms & (BLOCK_SITE_NONLINEAR | BLOCK_LINK_NONLINEAR)) != 0;
+  return count <= (terms & (BLOCK_SITE_NONLINEAR | BLOCK_LINK_NONLINEAR) ? FEW : NARROW);
 }
 
 size_t lattice_few_columns(size_t count) {
@@ -209,9 +209,71 @@ RIC_INLINE void raise_pairs(lattice_few *few, lattice_block *b, double h, const 
   }
 }
 
+/* --- linear particles --------------------------------------------------------------------------------------------- */
+
+static void set_scales(few_scales *s, double h) {
+  if (s->h == h)
+    return;
+  s->h = h;
+  for (int j = 0; j < FEW_LEVELS; j++) {
+    double divisor = (j + 1) * (j + 2);
+    s->divisor[j] = divisor <= LAST_DIVIDED ? divisor : 1;
+    s->low[j] = divisor <= LAST_DIVIDED ? h * h : h * h / divisor;
+    s->high[j] = divisor <= LAST_DIVIDED ? h * (j + 1) : h / (j + 2);
+  }
+}
+
+/* sum += scale matrix x; the newest number, x, comes last. */
+RIC_INLINE void add_columns(const few_matrix matrix, double scale, const double *x, double *sum, size_t count,
+                            size_t width) {
+  for (size_t i = 0; i < count; i++)
+    for (size_t k = 0; k < width; k++)
+      sum[k] += scale * ((const double *)matrix[i])[k] * x[i];
+}
+
+/* Level j + 2 from levels j and j + 1. */
+RIC_INLINE void linear_level(const lattice_few *few, const lattice_block *b, int j, const double *low,
+                             const double *high, double cosine, double sine, double *next, size_t count, size_t width) {
+  const few_scales *s = &few->scales;
+  double sum[FEW] = {0};
+  for (size_t k = 0; k < width && b->terms & BLOCK_FORCED; k++)
+    sum[k] = cosine * b->row[ROW_COS][k + 1] + sine * b->row[ROW_SIN][k + 1];
+  add_columns(few->stiffness, 1, low, sum, count, width);
+  for (size_t k = 0; k < width; k++)
+    sum[k] *= s->low[j];
+  if (b->terms & BLOCK_DAMPED)
+    add_columns(few->damping, s->high[j], high, sum, count, width);
+  for (size_t k = 0; k < width; k++)
+    next[k] = (j + 1) * (j + 2) <= LAST_DIVIDED ? sum[k] / s->divisor[j] : sum[k];
+}
+
+RIC_INLINE void raise_linear(lattice_few *few, lattice_block *b, double h, const double *cosine, const double *sine,
+                             size_t count, size_t width) {
+  double low[FEW], high[FEW], next[FEW];
+  set_scales(&few->scales, h);
+  memcpy(low, b->c + 1, width * sizeof *low);
+  memcpy(high, b->c + b->stride + 1, width * sizeof *high);
+  for (int j = 0; j + 2 <= b->order; j++) {
+    double *c = b->c + (size_t)(j + 2) * b->stride + 1;
+    linear_level(few, b, j, low, high, cosine[j], sine[j], next, count, width);
+    memcpy(c, next, width * sizeof *c);
+    if (b->presses.count > 0) {
+      lattice_block_press(b, j, h);
+      memcpy(next, c, width * sizeof *c);
+    }
+    lattice_block_close_ring(b, j + 2);
+    memcpy(low, high, width * sizeof *low);
+    memcpy(high, next, width * sizeof *high);
+  }
+}
+
 RIC_VECTORISED static void raise(lattice_few *few, lattice_block *b, double h, const double *cosine,
                                  const double *sine) {
-  if (b->count <= NARROW)
+  if (few->groups == 0 && b->count == 1)
+    raise_linear(few, b, h, cosine, sine, 1, 1);
+  else if (few->groups == 0 && b->count <= NARROW)
+    raise_linear(few, b, h, cosine, sine, b->count, NARROW);
+  else if (b->count <= NARROW)
     raise_pairs(few, b, h, cosine, sine, NARROW / RIC_LANES);
   else
     raise_pairs(few, b, h, cosine, sine, FEW_VECTORS);

@@ -186,13 +186,24 @@ static bool spring_is_linear(const ric_spring *s) {
   return s->quadratic == 0 && s->cubic == 0;
 }
 
-static bool lattice_is_linear(const ric_lattice *l) {
-  bool linear = true;
+static bool spring_is_passive(const ric_spring *s) {
+  return s->linear >= 0 && s->damping >= 0;
+}
+
+/* Whether all springs and links are of a sort. */
+static bool all_springs(const ric_lattice *l, bool (*is)(const ric_spring *spring)) {
+  bool all = true;
   for (size_t i = 0; i < (l->on_sites ? l->particles : 1); i++)
-    linear &= spring_is_linear(l->on_sites ? &l->on_sites[i] : &l->on_site);
+    all &= is(l->on_sites ? &l->on_sites[i] : &l->on_site);
   for (size_t i = 0; i < (l->links ? l->particles + 1 : 1); i++)
-    linear &= spring_is_linear(l->links ? &l->links[i] : &l->link);
-  return linear;
+    all &= is(l->links ? &l->links[i] : &l->link);
+  return all;
+}
+
+static double rate_bound(const ric_lattice *l) {
+  lattice_rows_bound b = lattice_row_bounds(l);
+  return all_springs(l, spring_is_passive) ? taylor_passive_rate_bound(b.stiffness, b.softest, b.damping)
+                                           : taylor_rate_bound(b.stiffness, b.damping);
 }
 
 /* Order, step and blocks. */
@@ -200,11 +211,9 @@ static void plan(lattice_flow *f) {
   const ric_lattice *l = f->lattice;
   size_t n = l->particles, pieces = (n + LATTICE_SERIES_BLOCK - 1) / LATTICE_SERIES_BLOCK;
   bool forced = l->force_cos || l->force_sin;
-  double stiffness, damping;
-  lattice_row_bounds(l, &stiffness, &damping);
-  f->stepper =
-      (taylor_stepper){.flow = &f->base, .expand = expand, .shorten = shorten, .by_bound = lattice_is_linear(l)};
-  taylor_stepper_plan(&f->stepper, taylor_rate_bound(stiffness, damping), forced ? l->frequency : 0);
+  bool linear = all_springs(l, spring_is_linear);
+  f->stepper = (taylor_stepper){.flow = &f->base, .expand = expand, .shorten = shorten, .by_bound = linear};
+  taylor_stepper_plan(&f->stepper, rate_bound(l), forced ? l->frequency : 0);
   f->block = (n + pieces - 1) / pieces;
   f->base.pieces = (n + f->block - 1) / f->block;
 }

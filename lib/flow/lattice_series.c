@@ -95,6 +95,7 @@ ric_status lattice_series_create(const ric_lattice *lattice, int order, size_t b
     return ric_fail(error, RIC_ENOMEM, "no memory for the Taylor coefficients of %zu particles", block);
   }
   lay_out(&s->block, s->store);
+  s->turn = NAN;
   return RIC_OK;
 }
 
@@ -153,15 +154,19 @@ ric_status lattice_series_begin(lattice_series *s, const ric_lattice *lattice, c
 
 bool series_next_run(const lattice_series *s, series_run *run) {
   const lattice_block *b = &s->block;
+  if (b->whole) { /* one run between two ghosts */
+    bool first = run->count == 0;
+    *run = (series_run){.column = 1, .count = b->count};
+    return first;
+  }
   size_t n = s->lattice->particles, width = b->count + 2 * b->ghosts;
-  ptrdiff_t begin = b->whole ? 0 : (ptrdiff_t)s->segment.first - (ptrdiff_t)b->ghosts;
+  ptrdiff_t begin = (ptrdiff_t)s->segment.first - (ptrdiff_t)b->ghosts, whole = (ptrdiff_t)n;
   size_t column = run->column + run->count; /* behind the last run */
-  if (column == 0 && (b->whole || (begin < 0 && !s->ring)))
-    column = b->whole ? 1 : (size_t)-begin;
-  ptrdiff_t particle = b->whole ? (ptrdiff_t)column - 1 : begin + (ptrdiff_t)column;
-  if (column >= width || (particle >= (ptrdiff_t)n && (b->whole || !s->ring)))
+  if (column == 0 && begin < 0 && !s->ring)
+    column = (size_t)-begin;
+  ptrdiff_t particle = begin + (ptrdiff_t)column;
+  if (column >= width || (particle >= whole && !s->ring))
     return false;
-  ptrdiff_t whole = (ptrdiff_t)n;
   size_t wrapped = (size_t)((particle % whole + whole) % whole);
   size_t rest = n - wrapped, left = width - column;
   *run = (series_run){.column = column, .particle = wrapped, .count = rest < left ? rest : left};
@@ -193,18 +198,29 @@ static void load_state(lattice_series *s, const double *q, const double *v, doub
   lattice_block_close_ring(b, 1);
 }
 
-/* Series of cos(w t) and sin(w t) in x. */
-static void forcing_series(const lattice_series *s, double start, double length, double *cosine, double *sine) {
-  double phase = s->lattice->frequency * start, step = s->lattice->frequency * length, factor = 1;
-  double c = cos(phase), d = sin(phase);
-  for (int j = 0; j <= RIC_POLY_DEGREE; j++) {
-    cosine[j] = factor * c;
-    sine[j] = factor * d;
-    double turned = -d; /* the derivative of the cosine */
-    d = c;
-    c = turned;
-    factor *= step / (j + 1);
+static void set_powers(lattice_series *s, double turn) {
+  double power = 1;
+  if (s->turn == turn)
+    return;
+  s->turn = turn;
+  for (int j = 0; j < SERIES_POWERS; j++) {
+    s->power[j] = power;
+    power *= turn / (j + 1);
   }
+}
+
+/* Series of cos(w t) and sin(w t) in x: their derivatives are the same four numbers again and again. Forces of held
+ * contacts go beyond the order. */
+static void forcing_series(lattice_series *s, double start, double length) {
+  double phase = s->lattice->frequency * start, c = cos(phase), d = sin(phase);
+  const double cosine[4] = {c, -d, -c, d}, sine[4] = {d, c, -d, -c};
+  int degree = s->held_count > 0 ? RIC_POLY_DEGREE : s->block.order;
+  set_powers(s, s->lattice->frequency * length);
+  for (int j = 0; j <= degree; j += 4)
+    for (int k = 0; k < 4; k++) {
+      s->cosine[j + k] = s->power[j + k] * cosine[k];
+      s->sine[j + k] = s->power[j + k] * sine[k];
+    }
 }
 
 ric_segment lattice_series_segment(lattice_series *s, const double *q, const double *v, double start, double length,
@@ -221,7 +237,7 @@ ric_segment lattice_series_segment(lattice_series *s, const double *q, const dou
   }
   load_state(s, q, v, length);
   if (b->terms & BLOCK_FORCED)
-    forcing_series(s, start, length, s->cosine, s->sine);
+    forcing_series(s, start, length);
   if (s->few)
     lattice_few_raise(s->few, b, length, s->cosine, s->sine);
   else
@@ -244,7 +260,7 @@ ric_segment lattice_series_shorten(lattice_series *s, const double *q, const dou
       c[i] *= factor;
   }
   if (b->terms & BLOCK_FORCED)
-    forcing_series(s, s->segment.start, s->segment.length, s->cosine, s->sine);
+    forcing_series(s, s->segment.start, s->segment.length);
   return s->segment;
 }
 

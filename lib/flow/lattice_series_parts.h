@@ -5,6 +5,8 @@
 #include "lattice_few.h"
 #include "lattice_series.h"
 
+enum { SERIES_POWERS = (RIC_POLY_DEGREE / 4 + 1) * 4 };
+
 struct lattice_series {
   lattice_block block;
   lattice_few *few; /* which makes the levels; NULL: the block does */
@@ -17,7 +19,9 @@ struct lattice_series {
   size_t loaded_count; /* particles of the stretch whose rows are loaded, from segment.first on; 0: none */
   size_t held_count;
   size_t *held_column; /* [stride] */
-  double cosine[RIC_POLY_DEGREE + 1], sine[RIC_POLY_DEGREE + 1];
+  double cosine[SERIES_POWERS], sine[SERIES_POWERS];
+  double turn;                 /* frequency times length of the steps for which there are */
+  double power[SERIES_POWERS]; /* turn^j / j! */
 };
 
 /** Columns of a block that are particles following each other. */

@@ -3,10 +3,11 @@
 #include <math.h>
 #include <stddef.h>
 
+#include "poly_look.h"
+
 enum {
   SIZE = RIC_POLY_DEGREE + 1,
-  DEPTH = 52,     /* halvings of [0, 1] that doubles resolve */
-  LOW_POWERS = 10 /* those that matter most in the segments of flows */
+  DEPTH = 52 /* halvings of [0, 1] that doubles resolve */
 };
 
 double ric_poly_value(const double *c, int degree, double x, double *slope) {
@@ -99,10 +100,9 @@ static int has_settled(double change, double last) {
   return change <= 1e-16 || (last > 0 && (change * change <= 1e-17 * last || (change <= 1e-9 && change >= 0.9 * last)));
 }
 
-/* The only root of the polynomial (order 0, falling) or of its derivative (order 1, rising) in [low, high]: Newton's
- * method inside a shrinking bracket. */
-static double bracketed_root(const double *c, int degree, int order, double low, double high) {
-  double d[SIZE], x = (low + high) / 2, last = 0;
+/* Newton's method inside a shrinking bracket. */
+double poly_bracketed_root(const double *c, int degree, int order, double low, double high, double guess) {
+  double d[SIZE], x = guess, last = 0;
   for (int j = 0; j <= degree - order; j++)
     d[j] = order ? (j + 1) * c[j + 1] : -c[j];
   for (int i = 0; i < 2 * DEPTH; i++) {
@@ -124,33 +124,8 @@ static double bracketed_root(const double *c, int degree, int order, double low,
   return x;
 }
 
-static const double bound_rounding = 2e-15; /* of those bounds, relative to the sum of the coefficients' sizes */
-
-/* Bernstein form of degree LOW_POWERS of the powers up to it; fixed bounds let the compiler keep it in registers. */
-static double smallest_of_low_powers(const double *c, int degree) {
-  static const double inverse_binomial[LOW_POWERS + 1] = {1.,       1. / 10,  1. / 45, 1. / 120, 1. / 210, 1. / 252,
-                                                          1. / 210, 1. / 120, 1. / 45, 1. / 10,  1.};
-  double b[LOW_POWERS + 1];
-  for (int j = 0; j <= LOW_POWERS; j++)
-    b[j] = j <= degree ? c[j] * inverse_binomial[j] : 0;
-  for (int r = 0; r < LOW_POWERS; r++)
-    for (int j = LOW_POWERS; j > r; j--)
-      b[j] += b[j - 1];
-  return smallest(b, LOW_POWERS);
-}
-
-/* Whether the polynomial is above a value on all of [0, 1], as far as cheap bounds can say: the coefficients, then the
- * Bernstein form of the low powers with the negative high ones taken off whole, a tenth of the cost of the full form.
- */
-static int lies_above(const double *c, int degree, double value) {
-  double rest = 0, size = 0;
-  if (ric_poly_lower_bound(c, degree) > value)
-    return 1;
-  for (int j = 0; j <= degree; j++)
-    size += fabs(c[j]);
-  for (int j = LOW_POWERS + 1; j <= degree; j++)
-    rest += c[j] < 0 ? c[j] : 0;
-  return smallest_of_low_powers(c, degree) + rest - bound_rounding * size > value;
+static double root_in(const double *c, int degree, int order, const piece *p) {
+  return poly_bracketed_root(c, degree, order, p->start, p->start + p->width, p->start + p->width / 2);
 }
 
 static void improve(double *best, double *best_at, double value, double at) {
@@ -161,7 +136,7 @@ static void improve(double *best, double *best_at, double value, double at) {
 }
 
 int ric_poly_minimum(const double *c, int degree, double cutoff, double tolerance, double *at, double *value) {
-  if (lies_above(c, degree, cutoff))
+  if (poly_look_above(c, degree, cutoff) == POLY_ABOVE)
     return 0;
   piece stack[DEPTH + 1];
   double best = INFINITY, best_at = 0;
@@ -177,7 +152,7 @@ int ric_poly_minimum(const double *c, int degree, double cutoff, double toleranc
       continue;
     int first, changes = sign_changes(p->b, degree, 1, &first);
     if (changes == 1 && first < 0) {
-      double x = bracketed_root(c, degree, 1, p->start, p->start + p->width);
+      double x = root_in(c, degree, 1, p);
       improve(&best, &best_at, ric_poly_value(c, degree, x, NULL), x);
     } else if (changes > 1 && depth < DEPTH) {
       halve(p, p + 1, degree);
@@ -191,6 +166,8 @@ int ric_poly_minimum(const double *c, int degree, double cutoff, double toleranc
   return 1;
 }
 
+static const double slope_rounding = 2e-15; /* of the bounds below, relative to the sum of the coefficients' sizes */
+
 /* Whether there is no minimum inside, as far as cheap bounds can say: the slope keeps its sign, or it falls everywhere.
  */
 static int has_no_valley(const double *c, int degree) {
@@ -202,12 +179,12 @@ static int has_no_valley(const double *c, int degree) {
     high += slope > 0 ? slope : 0;
     curvature += j > 2 && slope > 0 ? (j - 1) * slope : 0;
   }
-  double rounding = bound_rounding * size;
+  double rounding = slope_rounding * size;
   return low > rounding || high < -rounding || curvature < -rounding * degree;
 }
 
 int ric_poly_first_minimum(const double *c, int degree, double cutoff, double *at, double *value) {
-  if (has_no_valley(c, degree) || lies_above(c, degree, cutoff))
+  if (has_no_valley(c, degree) || poly_look_above(c, degree, cutoff) == POLY_ABOVE)
     return 0;
   piece stack[DEPTH + 1];
   int depth = 1, before = 0; /* sign of the slope at the end of the pieces done */
@@ -223,7 +200,7 @@ int ric_poly_first_minimum(const double *c, int degree, double cutoff, double *a
       continue;
     }
     if (low && (inside || between)) {
-      *at = between ? p->start : bracketed_root(c, degree, 1, p->start, p->start + p->width);
+      *at = between ? p->start : root_in(c, degree, 1, p);
       *value = ric_poly_value(c, degree, *at, NULL);
       if (*value <= cutoff)
         return 1;
@@ -258,7 +235,7 @@ static int piece_of_first_root(const double *c, int degree, piece *stack) {
 
 int ric_poly_first_root(const double *c, int degree, double *at) {
   piece stack[DEPTH + 1], *p = stack;
-  if (lies_above(c, degree, 0))
+  if (poly_look_above(c, degree, 0) == POLY_ABOVE)
     return 0;
   int changes = piece_of_first_root(c, degree, stack);
   if (changes < 0)
@@ -266,7 +243,7 @@ int ric_poly_first_root(const double *c, int degree, double *at) {
   if (p->b[0] > 0 && changes == 0) /* positive up to its end, where it is zero */
     *at = p->start + p->width;
   else if (p->b[0] > 0 && changes == 1)
-    *at = bracketed_root(c, degree, 0, p->start, p->start + p->width);
+    *at = root_in(c, degree, 0, p);
   else
     *at = p->start;
   return 1;
@@ -274,5 +251,6 @@ int ric_poly_first_root(const double *c, int degree, double *at) {
 
 int ric_poly_is_positive(const double *c, int degree) {
   piece stack[DEPTH + 1];
-  return lies_above(c, degree, 0) || piece_of_first_root(c, degree, stack) < 0;
+  poly_look answer = poly_look_above(c, degree, 0);
+  return answer == POLY_UNDECIDED ? piece_of_first_root(c, degree, stack) < 0 : answer == POLY_ABOVE;
 }

@@ -25,6 +25,19 @@ RIC_INLINE void horner(const double *top, size_t stride, int degree, double x, d
     slope[i] = d[i];
 }
 
+/* The same at the end, x = 1, where most steps are accepted: sums, in the same order. */
+RIC_INLINE void horner_at_end(const double *top, size_t stride, int degree, double *value, double *slope) {
+  double p = *top, d = 0;
+  for (int j = degree - 1; j >= 0; j--) {
+    top -= stride;
+    d += p;
+    p += *top;
+  }
+  *value = p;
+  if (slope)
+    *slope = d;
+}
+
 /* Values and derivatives in x of the columns [first, first + count); `slope` may be NULL. */
 RIC_VECTORISED static void evaluate(const ric_segment *segment, size_t first, size_t count, double x, double *value,
                                     double *slope) {
@@ -35,7 +48,10 @@ RIC_VECTORISED static void evaluate(const ric_segment *segment, size_t first, si
   if (i < count && count >= LANES) { /* some columns twice */
     i = count - LANES;
     horner(top + i, segment->stride, segment->degree, x, value + i, slope ? slope + i : NULL, LANES);
-  } else
+  } else if (x == 1)
+    for (; i < count; i++)
+      horner_at_end(top + i, segment->stride, segment->degree, value + i, slope ? slope + i : NULL);
+  else
     for (; i < count; i++)
       horner(top + i, segment->stride, segment->degree, x, value + i, slope ? slope + i : NULL, 1);
 }

@@ -57,6 +57,11 @@ double taylor_rate_bound(double stiffness, double damping) {
   return damping / 2 + sqrt(damping * damping / 4 + stiffness); /* |s|^2 <= |C| |s| + |K| */
 }
 
+double taylor_passive_rate_bound(double stiffness, double softest, double damping) {
+  double creeping = damping * damping / 4 - fmax(softest, 0);
+  return fmax(sqrt(stiffness), creeping >= 0 ? damping / 2 + sqrt(creeping) : 0);
+}
+
 RIC_VECTORISED static double largest(const double *x, size_t count) {
   enum { LANES = 8 };
   double most[LANES] = {0}, finite[LANES] = {0}, found = 0, sum = 0;

@@ -22,6 +22,11 @@ double taylor_carried_reach(double tolerance, int order);
 /** Bound of |s| over the roots e^{s t} of q'' + C q' + K q = 0, from norms of K and C. */
 double taylor_rate_bound(double stiffness, double damping);
 
+/** The same where K and C, over the masses, are symmetric and no spring and no damper is negative: what a mode comes to
+ *  is a k of at most `stiffness` and at least `softest`, and a c of at most `damping`; |s| is sqrt(k) where it
+ *  oscillates, c / 2 + sqrt(c^2 / 4 - k) at most where it does not. */
+double taylor_passive_rate_bound(double stiffness, double softest, double damping);
+
 /** Largest absolute value of x [count]; not finite when one of them is not. */
 double taylor_largest(const double *x, size_t count);
 

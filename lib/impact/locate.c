@@ -2,11 +2,13 @@
 
 #include <stdlib.h>
 
+#include "flow/poly_look.h"
 #include "growing.h"
 
 enum {
   MOST_PARTS = 1 << 17, /* into which a step is cut where a function is hard to interpolate */
-  HALVINGS = 40
+  HALVINGS = 40,
+  FEW_COORDINATES = 4
 };
 
 ric_status locator_init(locator *l, ric_flow *flow, double grazing_tol, ric_error *error) {
@@ -91,13 +93,18 @@ static int first_root(const scan *s, size_t obstacle, const gap_part *part, depa
   return ric_poly_first_root(shifted, part->degree, y);
 }
 
-/* Whether the gap comes down to grazing_tol at all: for most contacts that bounds did not exclude, it does not. */
-static bool comes_near(const scan *s, const gap_part *part) {
-  double lowered[RIC_POLY_DEGREE + 1];
-  lowered[0] = part->c[0] - s->l->grazing_tol;
-  for (int j = 1; j <= part->degree; j++)
-    lowered[j] = part->c[j];
-  return !ric_poly_is_positive(lowered, part->degree);
+/* A cheap look at a gap, which tells most of those that stay away, or leave, and most that fall straight to zero.
+ * @returns whether that is all there is to say */
+static bool look_cheaply(const scan *s, const gap_part *part, departure from, bool *found, double *y) {
+  double tol = s->l->grazing_tol;
+  *found = false;
+  if (from == DEPARTS_FAST)
+    return has_slope(part->c, part->degree) && poly_look_leaves(part->c, part->degree, tol);
+  if (from == DEPARTS_SLOWLY)
+    return false;
+  poly_look seen = poly_look_fall(part->c, part->degree, tol, y);
+  *found = seen == POLY_FALLS;
+  return seen != POLY_UNDECIDED;
 }
 
 /* Whether a minimum above zero is one of its own, and not the touch that rounding has made a root: a root behind it is
@@ -113,9 +120,8 @@ static bool is_near_miss(const gap_part *part, bool found, double y, double at, 
 /* Root and near misses of an open rigid contact on one part; `found` ends the search along the piece. */
 static ric_status look_at_gap(scan *s, size_t obstacle, const gap_part *part, departure from, bool *found) {
   double y = 0, at, least, width = part->to - part->from;
-  *found = false;
-  if (from == DEPARTED && !comes_near(s, part))
-    return RIC_OK;
+  if (look_cheaply(s, part, from, found, &y))
+    return *found ? found_root(s, obstacle, part->from + y * width) : RIC_OK;
   *found = first_root(s, obstacle, part, from, &y);
   if (from != DEPARTS_SLOWLY && ric_poly_first_minimum(part->c, part->degree, s->l->grazing_tol, &at, &least) &&
       is_near_miss(part, *found, y, at, least, s->l->noise))
@@ -182,20 +188,23 @@ static ric_status make_room(locator *l, size_t width, ric_error *error) {
   return l->width ? RIC_OK : ric_fail(error, RIC_ENOMEM, "no memory for bounds of %zu coordinates", width);
 }
 
-/* Obstacles at the coordinates of a piece, nearly all of which the bounds exclude. */
+/* Obstacles at the coordinates of a piece. Bounds of all coordinates exclude nearly all of many; they take as long as
+ * the first look at each of a few. */
 static ric_status scan_coordinates(scan *s, const ric_segment *piece) {
   const ric_system *system = s->flow->system;
   locator *l = s->l;
+  bool bounded = piece->coordinates > FEW_COORDINATES;
   RIC_TRY(make_room(l, piece->coordinates, s->error));
-  ric_segment_bounds(piece, l->lower, l->upper);
+  if (bounded)
+    ric_segment_bounds(piece, l->lower, l->upper);
   for (size_t k = system_first_obstacle(system, piece->first); k < system->obstacle_count; k++) {
     size_t j = system->by_coordinate[k];
     const ric_obstacle *o = &system->obstacles[j];
     size_t i = o->coordinate - piece->first;
     if (i >= piece->coordinates)
       break;
-    double least = obstacle_least_gap(o, l->lower[i], l->upper[i]);
-    if (!(least > l->grazing_tol) || flow_contact(s->flow, j) != CONTACT_OPEN)
+    bool clear = bounded && obstacle_least_gap(o, l->lower[i], l->upper[i]) > l->grazing_tol;
+    if (!clear || flow_contact(s->flow, j) != CONTACT_OPEN)
       RIC_TRY(scan_contact(s, piece, j));
   }
   return RIC_OK;

@@ -128,6 +128,15 @@ ric_status ric_trajectory_start(ric_trajectory *tr, double t, const double *q, c
   return RIC_OK;
 }
 
+ric_status trajectory_set_clock(ric_trajectory *tr, double time, ric_error *error) {
+  double later = time - tr->flow->time;
+  tr->flow->time = tr->flow->end = time;
+  tr->window_start += later;
+  for (size_t i = 0; i < tr->coming_count; i++)
+    tr->coming[i].time += later;
+  return flow_restart(tr->flow, error);
+}
+
 ric_event event_of(const ric_trajectory *tr, ric_event_kind kind, size_t obstacle) {
   const ric_obstacle *o = tr->system->obstacles;
   return (ric_event){.kind = kind,

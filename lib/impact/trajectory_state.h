@@ -69,6 +69,10 @@ struct ric_trajectory {
   double window_events;
 };
 
+/** Sets the clock to another time at which the forces are the same; everything else stays as it is, contacts and
+ *  tangent vectors too. */
+ric_status trajectory_set_clock(ric_trajectory *tr, double time, ric_error *error);
+
 /** Shows an event to the observer and counts it. Unset fields: see event_of. */
 void trajectory_show(ric_trajectory *tr, const ric_event *event);
 

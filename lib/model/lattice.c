@@ -143,23 +143,23 @@ double ric_lattice_energy(const ric_lattice *lattice, const double *q, const dou
 }
 
 /* Gershgorin's circles. Links to a wall have no entry beside the diagonal. */
-void lattice_row_bounds(const ric_lattice *lattice, double *stiffness, double *damping) {
+lattice_rows_bound lattice_row_bounds(const ric_lattice *lattice) {
   size_t n = lattice->particles;
-  *stiffness = *damping = 0;
+  lattice_rows_bound b = {.softest = INFINITY};
   for (size_t i = 0; i < n; i++) {
     ric_spring own = ric_lattice_on_site(lattice, i);
     ric_spring left = ric_lattice_link(lattice, i), right = ric_lattice_link(lattice, i + 1);
     double to_left = i > 0 || is_ring(lattice), to_right = i + 1 < n || is_ring(lattice);
-    double k =
-        fabs(own.linear + left.linear + right.linear) + to_left * fabs(left.linear) + to_right * fabs(right.linear);
+    double diagonal = own.linear + left.linear + right.linear, mass = ric_lattice_mass(lattice, i);
+    double beside = to_left * fabs(left.linear) + to_right * fabs(right.linear);
     double c = own.damping + (1 + to_left) * left.damping + (1 + to_right) * right.damping;
-    *stiffness = fmax(*stiffness, k / ric_lattice_mass(lattice, i));
-    *damping = fmax(*damping, c / ric_lattice_mass(lattice, i));
+    b.stiffness = fmax(b.stiffness, (fabs(diagonal) + beside) / mass);
+    b.softest = fmin(b.softest, (diagonal - beside) / mass);
+    b.damping = fmax(b.damping, c / mass);
   }
+  return b;
 }
 
 double ric_lattice_frequency_bound(const ric_lattice *lattice) {
-  double stiffness, damping;
-  lattice_row_bounds(lattice, &stiffness, &damping);
-  return sqrt(stiffness);
+  return sqrt(lattice_row_bounds(lattice).stiffness);
 }

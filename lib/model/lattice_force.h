@@ -8,7 +8,12 @@
  *  and the forcing. O(1). */
 double lattice_force(const ric_lattice *lattice, size_t particle, double t, const double *q, const double *v);
 
-/** Largest row sums of |K| / m and of |C| / m of the linear part. */
-void lattice_row_bounds(const ric_lattice *lattice, double *stiffness, double *damping);
+/** Bounds from the rows of the linear part. */
+typedef struct lattice_rows_bound {
+  double stiffness, damping; /* largest row sums of |K| / m and of |C| / m */
+  double softest;            /* least K_ii - sum |K_ij| over m: a lower bound of the squares of frequencies */
+} lattice_rows_bound;
+
+lattice_rows_bound lattice_row_bounds(const ric_lattice *lattice);
 
 #endif

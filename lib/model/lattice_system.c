@@ -119,6 +119,10 @@ static bool forced(const ric_system *s) {
   return lattice->force_cos || lattice->force_sin;
 }
 
+static bool repeats(const ric_system *s, double time) {
+  return !forced(s) || frequency_repeats(lattice_system_lattice(s)->frequency, time);
+}
+
 static void destroy(ric_system *system) {
   lattice_system *s = (lattice_system *)(void *)system;
   free(s->masses);
@@ -141,6 +145,7 @@ static const system_model model = {.rate = rate,
                                    .restitution = obstacle_restitution,
                                    .mass = mass,
                                    .forced = forced,
+                                   .repeats = repeats,
                                    .destroy = destroy};
 
 /* Room for an array that may be NULL; there stays what there was. False when there is no memory. */

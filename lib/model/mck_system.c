@@ -188,6 +188,10 @@ static bool mck_forced(const ric_system *s) {
   return mck_of(s)->force_cos || mck_of(s)->force_sin;
 }
 
+static bool mck_repeats(const ric_system *s, double time) {
+  return !mck_forced(s) || frequency_repeats(mck_of(s)->frequency, time);
+}
+
 static const system_model mck_model = {.rate = mck_rate,
                                        .tangent = mck_tangent,
                                        .gap = obstacle_gap,
@@ -200,6 +204,7 @@ static const system_model mck_model = {.rate = mck_rate,
                                        .restitution = obstacle_restitution,
                                        .mass = mck_mass,
                                        .forced = mck_forced,
+                                       .repeats = mck_repeats,
                                        .destroy = mck_destroy};
 
 /* Makes the numbers of a model that has been checked; release them whatever the status. */

@@ -6,6 +6,7 @@
 #ifndef RICOCHET_SYSTEM_MODEL_H
 #define RICOCHET_SYSTEM_MODEL_H
 
+#include <math.h>
 #include <stdbool.h>
 
 #include "ricochet/system.h"
@@ -76,6 +77,8 @@ typedef struct system_model {
   double (*mass)(const ric_system *s, size_t coordinate);
   /** Whether its forces depend on time; NULL: not known. */
   bool (*forced)(const ric_system *s);
+  /** Whether its forces are the same again after a time, to rounding; NULL: not known. */
+  bool (*repeats)(const ric_system *s, double time);
   /** Frees what the model owns and the struct itself; obstacles are freed before. */
   void (*destroy)(ric_system *s);
 } system_model;
@@ -125,6 +128,12 @@ size_t system_compliant_obstacles(const ric_system *s);
 /** A lower bound of an obstacle's gap where its coordinate lies between two bounds. */
 static inline double obstacle_least_gap(const ric_obstacle *o, double lower, double upper) {
   return o->side > 0 ? lower - o->position : o->position - upper;
+}
+
+/** Whether cosines of a frequency are the same again after a time: whole turns, to rounding. */
+static inline bool frequency_repeats(double frequency, double time) {
+  double turns = frequency * time / 6.28318530717958647692;
+  return fabs(turns - round(turns)) <= 1e-14 * fabs(turns);
 }
 
 /** First position in by_coordinate whose obstacle has a coordinate >= `coordinate`. */

@@ -37,6 +37,24 @@ static void rate_bound_is_met_without_damping_and_without_springs(void **state) 
     assert_true(taylor_rate_bound(1, c) >= (c > 2 ? c / 2 + sqrt(c * c / 4 - 1) : 1));
 }
 
+/* Of passive modes whose k and c lie anywhere between the bounds. */
+static void passive_rate_bound_holds_and_is_met(void **state) {
+  (void)state;
+  for (double softest = 0; softest < 2; softest += 0.37)
+    for (double damping = 0; damping < 8; damping += 0.41) {
+      double bound = taylor_passive_rate_bound(2, softest, damping), most = 0;
+      for (int i = 0; i <= 20; i++)
+        for (int j = 0; j <= 20; j++) {
+          double k = softest + (2 - softest) * i / 20, c = damping * j / 20, root = c * c / 4 - k;
+          most = fmax(most, root < 0 ? sqrt(k) : c / 2 + sqrt(root));
+        }
+      assert_true(bound <= taylor_rate_bound(2, damping) + 1e-14);
+      assert_true(most <= bound + 1e-14);
+      if (damping * damping / 4 > softest || damping * damping < 8)
+        assert_close(most, bound, 1e-13);
+    }
+}
+
 /* c_j = 1 / rho^j: at the step found, one of the last two terms has come down to a tenth of tolerance times change. */
 static void last_terms_meet_the_tolerance(void **state) {
   (void)state;
@@ -141,6 +159,7 @@ int main(void) {
       cmocka_unit_test(last_terms_meet_the_tolerance),
       cmocka_unit_test(linear_motions_reach_as_far_as_the_first_term_left_out_allows),
       cmocka_unit_test(rate_bound_is_met_without_damping_and_without_springs),
+      cmocka_unit_test(passive_rate_bound_holds_and_is_met),
       cmocka_unit_test(a_motion_without_last_terms_grows_by_the_most),
       cmocka_unit_test(steps_keep_away_from_branch_points),
       cmocka_unit_test(motion_can_begin_at_rest),
