@@ -23,9 +23,10 @@ typedef struct benchmark {
   work_done (*run)(size_t argument, int variant);
 } benchmark;
 
-/** Lists that end with a NULL name: orbits, trajectories, multipliers, curves of solutions, families, and flows. */
+/** Lists that end with a NULL name: orbits, trajectories, multipliers, curves of solutions, families, flows, and
+ * diagrams of maps, sections of motions. */
 extern const benchmark benchmarks[], trajectory_benchmarks[], multiplier_benchmarks[], continuation_benchmarks[],
-    family_benchmarks[], flow_benchmarks[];
+    family_benchmarks[], flow_benchmarks[], diagram_benchmarks[], section_benchmarks[];
 
 /** Seconds on the monotonic clock. */
 double bench_seconds(void);

@@ -66,10 +66,10 @@ static int scaling(const benchmark *b) {
   return bench_scaling() || fflush(stdout) != 0;
 }
 
-enum { LISTS = 6 };
+enum { LISTS = 8 };
 static const benchmark *const lists[LISTS] = {
     benchmarks,        trajectory_benchmarks, multiplier_benchmarks, continuation_benchmarks,
-    family_benchmarks, flow_benchmarks};
+    family_benchmarks, flow_benchmarks,       diagram_benchmarks,    section_benchmarks};
 
 static void list(void) {
   for (size_t l = 0; l < LISTS; l++)

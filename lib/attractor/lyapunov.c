@@ -1,4 +1,4 @@
-#include "ricochet/lyapunov.h"
+#include "lyapunov_course.h"
 
 #include <math.h>
 #include <stdint.h>
@@ -10,26 +10,10 @@
 
 #include "impact/trajectory_state.h"
 #include "model/system_model.h"
-#include "orthonormal.h"
 
 ric_lyapunov_options ric_lyapunov_options_default(void) {
   return (ric_lyapunov_options){.interval = 1};
 }
-
-/* A run on its way. */
-typedef struct course {
-  ric_trajectory *trajectory;
-  const ric_lyapunov_options *options;
-  size_t n, size, count;
-  double *vectors; /* [size][count] */
-  double *growth;  /* [count] logarithms of R's diagonal of one interval */
-  double *sum;     /* [count] of them all */
-  double begin;    /* time at which the sums begin */
-  double mark;     /* end of the present interval */
-  double stride;   /* from one factorisation to the next within it */
-  orthonormal_work work;
-  ric_lyapunov *result;
-} course;
 
 /* Shorter ones are lost in the rounding of time. */
 static double least_interval(double t) {
@@ -56,25 +40,48 @@ static void scatter(double *x, size_t count) {
   }
 }
 
-static ric_status set_up(course *c, ric_error *error) {
+static ric_status allocate(lyapunov_course *c, ric_error *error) {
   c->vectors = calloc(c->size * c->count, sizeof *c->vectors);
   c->growth = calloc(2 * c->count, sizeof *c->growth);
   if (!c->vectors || !c->growth)
     return ric_fail(error, RIC_ENOMEM, "no memory for %zu tangent vectors of %zu numbers", c->count, c->size);
   c->sum = c->growth + c->count;
-  RIC_TRY(orthonormal_init(&c->work, c->size, c->count, error));
-  scatter(c->vectors, c->size * c->count);
-  orthonormal_make(&c->work, c->vectors, c->growth);
+  return orthonormal_init(&c->work, c->size, c->count, error);
+}
+
+ric_status lyapunov_course_init(lyapunov_course *c, ric_trajectory *trajectory, const ric_lyapunov_options *options,
+                                ric_error *error) {
+  const ric_system *system = trajectory->system;
+  *c = (lyapunov_course){.trajectory = trajectory, .options = *options, .n = system->coordinates};
+  c->size = c->n + system->speeds;
+  c->count = options->count ? options->count : c->size;
+  RIC_TRY(allocate(c, error));
+  lyapunov_course_restart(c);
   return RIC_OK;
 }
 
-static void tear_down(course *c) {
+void lyapunov_course_clear(lyapunov_course *c) {
   free(c->vectors);
   free(c->growth);
   orthonormal_clear(&c->work);
+  *c = (lyapunov_course){0};
 }
 
-static double time_now(const course *c) {
+void lyapunov_course_restart(lyapunov_course *c) {
+  scatter(c->vectors, c->size * c->count);
+  orthonormal_make(&c->work, c->vectors, c->growth);
+  c->stride = c->options.interval / 64;
+  c->begin = -INFINITY;
+  lyapunov_course_forget(c);
+}
+
+void lyapunov_course_forget(lyapunov_course *c) {
+  c->time = 0;
+  for (size_t k = 0; k < c->count; k++)
+    c->sum[k] = 0;
+}
+
+static double time_now(const lyapunov_course *c) {
   return ric_trajectory_time(c->trajectory);
 }
 
@@ -91,8 +98,8 @@ static void join(ric_run *whole, const ric_run *part) {
   whole->flow.starts += before.flow.starts;
 }
 
-/* The tangent vectors at the end of an interval: factorised, their growth added when it counts. */
-static void take_stock(course *c, double length, double *exponents) {
+/* The tangent vectors at the end of a stride: factorised, their growth added when it counts. */
+static void take_stock(lyapunov_course *c, double length) {
   size_t n = c->n, count = c->count;
   memcpy(c->vectors, ric_trajectory_dq(c->trajectory), n * count * sizeof *c->vectors);
   if (c->size > n)
@@ -100,16 +107,14 @@ static void take_stock(course *c, double length, double *exponents) {
   orthonormal_make(&c->work, c->vectors, c->growth);
   if (time_now(c) <= c->begin)
     return;
-  c->result->time += length;
-  for (size_t k = 0; k < count; k++) {
+  c->time += length;
+  for (size_t k = 0; k < count; k++)
     c->sum[k] += c->growth[k];
-    exponents[k] = c->sum[k] / c->result->time;
-  }
 }
 
 /* Vectors part by no more than e^7 in a stride: what is left of one that lies in the span of those before it has been
  * put out by a contact. */
-static void adapt(course *c) {
+static void adapt(lyapunov_course *c) {
   double most = -INFINITY, least = INFINITY;
   for (size_t k = 0; k < c->count; k++)
     if (c->growth[k] > -INFINITY) {
@@ -117,68 +122,87 @@ static void adapt(course *c) {
       least = fmin(least, c->growth[k]);
     }
   double spread = most > least ? most - least : 0;
-  c->stride = fmin(c->stride * fmin(2, fmax(0.25, 7 / spread)), c->options->interval);
+  c->stride = fmin(c->stride * fmin(2, fmax(0.25, 7 / spread)), c->options.interval);
   c->stride = fmax(c->stride, least_interval(time_now(c)));
 }
 
 /* The end of the present interval is in c->mark; strides that would leave a sliver of it go all the way. */
-static double next_stop(course *c, double end) {
+static double next_stop(lyapunov_course *c, double end) {
   double t = time_now(c);
   if (!(c->mark > t))
-    c->mark = fmin(t + c->options->interval, t < c->begin ? fmin(c->begin, end) : end);
+    c->mark = fmin(t + c->options.interval, t < c->begin ? fmin(c->begin, end) : end);
   return t + 1.2 * c->stride < c->mark ? t + c->stride : c->mark;
 }
 
+/* Shows the exponents so far. @returns whether that was enough */
+static bool report(lyapunov_course *c, ric_run *whole) {
+  const ric_lyapunov_options *o = &c->options;
+  if (!(c->time > 0) || !o->history)
+    return false;
+  for (size_t k = 0; k < c->count; k++)
+    c->growth[k] = c->sum[k] / c->time;
+  if (o->history(c->time, c->growth, c->count, o->user) == 0)
+    return false;
+  whole->outcome = RIC_RUN_ENDED;
+  snprintf(whole->reason, sizeof whole->reason, "the history asked for the end");
+  return true;
+}
+
 /* One stride. @param over  whether it was the last */
-static ric_status advance(course *c, double end, double *exponents, bool *over, ric_error *error) {
-  const ric_lyapunov_options *o = c->options;
+static ric_status advance(lyapunov_course *c, double end, ric_run *whole, bool *over, ric_error *error) {
   double start = time_now(c);
   ric_run part;
   RIC_TRY(ric_trajectory_carry(c->trajectory, c->count, c->vectors, c->vectors + c->n * c->count, error));
-  RIC_TRY(ric_trajectory_run(c->trajectory, next_stop(c, end), o->observer, &part, error));
-  join(&c->result->run, &part);
+  RIC_TRY(ric_trajectory_run(c->trajectory, next_stop(c, end), c->options.observer, &part, error));
+  join(whole, &part);
   *over = part.outcome != RIC_RUN_COMPLETED || time_now(c) >= end;
-  if (ric_trajectory_columns(c->trajectory) != c->count || !(time_now(c) > start))
+  if (ric_trajectory_columns(c->trajectory) != c->count)
     return RIC_OK;
-  take_stock(c, time_now(c) - start, exponents);
+  /* Also of a stride that has not moved time: an observer may have ended it at an impact. */
+  take_stock(c, time_now(c) - start);
   adapt(c);
-  bool reported = time_now(c) >= c->mark || *over;
-  if (reported && c->result->time > 0 && o->history && o->history(c->result->time, exponents, c->count, o->user) != 0) {
-    c->result->run.outcome = RIC_RUN_ENDED;
-    snprintf(c->result->run.reason, sizeof c->result->run.reason, "the history asked for the end");
-    *over = true;
-  }
+  if (time_now(c) >= c->mark || *over)
+    *over |= report(c, whole);
   return RIC_OK;
 }
 
-static ric_status run(course *c, double end, double *exponents, ric_error *error) {
-  ric_run *whole = &c->result->run;
-  RIC_TRY(set_up(c, error));
+ric_status lyapunov_course_run(lyapunov_course *c, double end, ric_run *run, ric_error *error) {
+  c->mark = time_now(c);
   /* Contacts that are closed at the start come before the tangent vectors. */
-  RIC_TRY(ric_trajectory_run(c->trajectory, time_now(c), c->options->observer, whole, error));
-  bool over = whole->outcome != RIC_RUN_COMPLETED;
-  while (!over)
-    RIC_TRY(advance(c, end, exponents, &over, error));
+  RIC_TRY(ric_trajectory_run(c->trajectory, time_now(c), c->options.observer, run, error));
+  bool over = run->outcome != RIC_RUN_COMPLETED;
+  gsl_error_handler_t *handler = gsl_set_error_handler_off();
+  ric_status status = RIC_OK;
+  while (!over && status == RIC_OK)
+    status = advance(c, end, run, &over, error);
+  gsl_set_error_handler(handler);
+  return status;
+}
+
+/* A whole run. */
+static ric_status run(lyapunov_course *c, double end, double *exponents, ric_lyapunov *lyapunov, ric_error *error) {
+  c->begin = time_now(c) + c->options.transient;
+  RIC_TRY(lyapunov_course_run(c, end, &lyapunov->run, error));
+  lyapunov->time = c->time;
+  for (size_t k = 0; k < c->count && c->time > 0; k++)
+    exponents[k] = c->sum[k] / c->time;
   return RIC_OK;
 }
 
 ric_status ric_lyapunov_run(ric_trajectory *trajectory, double end, const ric_lyapunov_options *options,
                             double *exponents, ric_lyapunov *lyapunov, ric_error *error) {
   ric_lyapunov_options o = options ? *options : ric_lyapunov_options_default();
-  const ric_system *system = trajectory->system;
-  course c = {.trajectory = trajectory, .options = &o, .n = system->coordinates, .result = lyapunov};
-  c.size = c.n + system->speeds;
-  c.count = o.count ? o.count : c.size;
-  c.mark = time_now(&c);
-  c.begin = c.mark + o.transient;
-  c.stride = o.interval / 64;
+  size_t size = trajectory->system->coordinates + trajectory->system->speeds;
+  lyapunov_course c = {0};
   *lyapunov = (ric_lyapunov){0};
-  RIC_TRY(check(&o, c.size, end, error));
-  for (size_t k = 0; k < c.count; k++)
+  RIC_TRY(check(&o, size, end, error));
+  for (size_t k = 0; k < (o.count ? o.count : size); k++)
     exponents[k] = NAN;
   gsl_error_handler_t *handler = gsl_set_error_handler_off();
-  ric_status status = run(&c, end, exponents, error);
+  ric_status status = lyapunov_course_init(&c, trajectory, &o, error);
   gsl_set_error_handler(handler);
-  tear_down(&c);
+  if (status == RIC_OK)
+    status = run(&c, end, exponents, lyapunov, error);
+  lyapunov_course_clear(&c);
   return status;
 }

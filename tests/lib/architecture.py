@@ -17,7 +17,7 @@ PUBLIC = {  # public headers by room
     "branch": {"continuation"},
     "family": {"family"},
     "grazing": {"bypass", "grazing", "grazing_criterion", "grazing_map"},
-    "attractor": {"lyapunov"},
+    "attractor": {"attractor", "cycle_window", "lyapunov", "motion_section", "motion_window"},
 }
 BASE = {"status", "export", "version"}
 UMBRELLA = "ricochet.h"

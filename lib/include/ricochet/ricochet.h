@@ -6,9 +6,11 @@
 #ifndef RICOCHET_H
 #define RICOCHET_H
 
+#include "attractor.h"
 #include "bypass.h"
 #include "chain.h"
 #include "continuation.h"
+#include "cycle_window.h"
 #include "event.h"
 #include "family.h"
 #include "flow.h"
@@ -20,6 +22,8 @@
 #include "lyapunov.h"
 #include "mck.h"
 #include "monodromy.h"
+#include "motion_section.h"
+#include "motion_window.h"
 #include "multipliers.h"
 #include "normal_modes.h"
 #include "obstacle.h"

@@ -1,0 +1,296 @@
+#include "cycle_equations.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_PERIOD = 10000, MOST_UNKNOWNS = 500 };
+
+/* Pieces end where the powers of L exceed it: what errors grow by in one of them. */
+static const double most_growth = 100;
+
+/* States are the same when they differ by less, over the largest of the cycle. */
+static const double same = 1e-9;
+
+static double dot(const double *a, const double *b, size_t size) {
+  double sum = 0;
+  for (size_t i = 0; i < size; i++)
+    sum += a[i] * b[i];
+  return sum;
+}
+
+static void swap(double **a, double **b) {
+  double *kept = *a;
+  *a = *b;
+  *b = kept;
+}
+
+/* next = L x for x [size][columns] */
+static void apply(const ric_grazing_map *map, const double *x, size_t columns, double *next) {
+  size_t m = map->size;
+  for (size_t i = 0; i < m; i++)
+    for (size_t c = 0; c < columns; c++) {
+      double sum = 0;
+      for (size_t j = 0; j < m; j++)
+        sum += map->L[i * m + j] * x[j * columns + c];
+      next[i * columns + c] = sum;
+    }
+}
+
+/* --- life --------------------------------------------------------------------------------------------------------- */
+
+static ric_status check(const ric_map_line *line, double p, size_t period, const double *z, ric_error *error) {
+  if (period < 1 || period > MOST_PERIOD)
+    return ric_fail(error, RIC_EINVAL, "period = %zu, expected 1 to %d", period, MOST_PERIOD);
+  if (!isfinite(p))
+    return ric_fail(error, RIC_EINVAL, "p = %g, expected a finite number", p);
+  for (size_t i = 0; i < line->size; i++)
+    if (!isfinite(z[i]))
+      return ric_fail(error, RIC_EINVAL, "z[%zu] = %g, expected a finite number", i, z[i]);
+  return RIC_OK;
+}
+
+static void take_itinerary(cycle_equations *e, const double *z) {
+  size_t m = e->map.size;
+  memcpy(e->z, z, m * sizeof *z);
+  for (size_t k = 0; k < e->period; k++) {
+    e->hits[k] = ric_grazing_map_hits(&e->map, e->d, e->z);
+    e->impacts += e->hits[k];
+    ric_grazing_map_step(&e->map, e->d, e->z, e->next);
+    swap(&e->z, &e->next);
+  }
+}
+
+static double largest_of(const double *x, size_t count) {
+  double largest = 0;
+  for (size_t i = 0; i < count; i++)
+    if (!(fabs(x[i]) <= largest))
+      largest = fabs(x[i]);
+  return largest;
+}
+
+static void set_identity(double *x, size_t m) {
+  memset(x, 0, m * m * sizeof *x);
+  for (size_t i = 0; i < m; i++)
+    x[i * m + i] = 1;
+}
+
+static void cut(cycle_equations *e) {
+  size_t m = e->map.size;
+  double *power = e->slopes, *next = e->next_slopes;
+  e->pieces = 0;
+  e->starts[e->pieces++] = 0;
+  set_identity(power, m);
+  for (size_t k = 1; k < e->period; k++) {
+    apply(&e->map, power, m, next);
+    swap(&power, &next);
+    if (!(largest_of(power, m * m) <= most_growth)) {
+      e->starts[e->pieces++] = k;
+      set_identity(power, m);
+    }
+  }
+  e->starts[e->pieces] = e->period;
+}
+
+static ric_status no_memory(const cycle_equations *e, ric_error *error) {
+  return ric_fail(error, RIC_ENOMEM, "no memory for a cycle of period %zu", e->period);
+}
+
+static ric_status allocate(cycle_equations *e, ric_error *error) {
+  size_t m = e->map.size;
+  e->hits = calloc(e->period, sizeof *e->hits);
+  e->starts = calloc(e->period + 1, sizeof *e->starts);
+  e->z = calloc(m, sizeof *e->z);
+  e->next = calloc(m, sizeof *e->next);
+  e->slopes = calloc(m * m, sizeof *e->slopes);
+  e->next_slopes = calloc(m * m, sizeof *e->next_slopes);
+  if (!(e->hits && e->starts && e->z && e->next && e->slopes && e->next_slopes))
+    return no_memory(e, error);
+  return ric_multipliers_init(&e->multipliers, m, error);
+}
+
+/* Room for the slopes by all unknowns: there are at least as many as states have numbers. */
+static ric_status make_room(cycle_equations *e, ric_error *error) {
+  size_t m = e->map.size;
+  e->unknowns = e->pieces * m + e->impacts;
+  if (e->unknowns > MOST_UNKNOWNS)
+    return ric_fail(error, RIC_ELIMIT, "%zu unknowns: %zu impacts, %zu pieces; expected at most %d", e->unknowns,
+                    e->impacts, e->pieces, MOST_UNKNOWNS);
+  free(e->slopes);
+  free(e->next_slopes);
+  e->slopes = calloc(m * e->unknowns, sizeof *e->slopes);
+  e->next_slopes = calloc(m * e->unknowns, sizeof *e->next_slopes);
+  return e->slopes && e->next_slopes ? RIC_OK : no_memory(e, error);
+}
+
+ric_status cycle_equations_init(cycle_equations *e, const ric_map_line *line, double p, size_t period, const double *z,
+                                ric_error *error) {
+  *e = (cycle_equations){.line = line, .period = period};
+  RIC_TRY(check(line, p, period, z, error));
+  RIC_TRY(ric_grazing_map_init(&e->map, line->size, error));
+  RIC_TRY(allocate(e, error));
+  RIC_TRY(cycle_equations_set(e, p, error));
+  take_itinerary(e, z);
+  cut(e);
+  return make_room(e, error);
+}
+
+void cycle_equations_clear(cycle_equations *e) {
+  ric_grazing_map_clear(&e->map);
+  ric_multipliers_clear(&e->multipliers);
+  free(e->hits);
+  free(e->starts);
+  free(e->z);
+  free(e->next);
+  free(e->slopes);
+  free(e->next_slopes);
+  *e = (cycle_equations){0};
+}
+
+ric_status cycle_equations_set(cycle_equations *e, double p, ric_error *error) {
+  RIC_TRY(e->line->at(p, &e->map, &e->d, e->line->user, error));
+  RIC_TRY(ric_grazing_map_check(&e->map, error));
+  if (!isfinite(e->d))
+    return ric_fail(error, RIC_EINVAL, "d = %g at p = %g, expected a finite number", e->d, p);
+  e->parameter = p;
+  return RIC_OK;
+}
+
+/* --- along the cycle ---------------------------------------------------------------------------------------------- */
+
+void cycle_equations_guess(cycle_equations *e, const double *z, double *x) {
+  size_t m = e->map.size;
+  double *y = x + e->pieces * m;
+  memcpy(e->z, z, m * sizeof *z);
+  for (size_t k = 0, piece = 0; k < e->period; k++) {
+    if (k == e->starts[piece])
+      memcpy(x + piece++ * m, e->z, m * sizeof *x);
+    if (e->hits[k])
+      *y++ = sqrt(fmax(0, e->d - dot(e->map.eta, e->z, m)));
+    ric_grazing_map_step(&e->map, e->d, e->z, e->next);
+    swap(&e->z, &e->next);
+  }
+}
+
+static void begin_piece(cycle_equations *e, size_t piece, const double *x) {
+  size_t m = e->map.size;
+  memcpy(e->z, x + piece * m, m * sizeof *x);
+  memset(e->slopes, 0, m * e->unknowns * sizeof *e->slopes);
+  for (size_t i = 0; i < m; i++)
+    e->slopes[i * e->unknowns + piece * m + i] = 1;
+}
+
+/* y^2 + eta z - d = 0 */
+static void impact_row(const cycle_equations *e, double y, size_t which, double *F, double *J, size_t stride) {
+  size_t m = e->map.size, row = e->pieces * m + which;
+  F[row] = y * y + dot(e->map.eta, e->z, m) - e->d;
+  if (!J)
+    return;
+  for (size_t c = 0; c < e->unknowns; c++) {
+    double sum = 0;
+    for (size_t i = 0; i < m; i++)
+      sum += e->map.eta[i] * e->slopes[i * e->unknowns + c];
+    J[row * stride + c] = sum;
+  }
+  J[row * stride + row] += 2 * y;
+}
+
+static void advance(cycle_equations *e, bool with_slopes) {
+  apply(&e->map, e->z, 1, e->next);
+  swap(&e->z, &e->next);
+  if (!with_slopes)
+    return;
+  apply(&e->map, e->slopes, e->unknowns, e->next_slopes);
+  swap(&e->slopes, &e->next_slopes);
+}
+
+/* The impact's part of an iterate. */
+static void add_impact(cycle_equations *e, double y, size_t which) {
+  size_t m = e->map.size, column = e->pieces * m + which;
+  double s = e->map.stretch;
+  for (size_t i = 0; i < m; i++) {
+    e->z[i] += y * s * e->map.xi[i] + y * y * e->map.kappa[i];
+    e->slopes[i * e->unknowns + column] += s * e->map.xi[i] + 2 * y * e->map.kappa[i];
+  }
+}
+
+/* The end of a piece is the beginning of the next, or the first. */
+static void closing_rows(const cycle_equations *e, size_t piece, const double *x, double *F, double *J, size_t stride) {
+  size_t m = e->map.size, next = piece + 1 == e->pieces ? 0 : (piece + 1) * m;
+  for (size_t i = 0; i < m; i++) {
+    size_t row = piece * m + i;
+    F[row] = e->z[i] - x[next + i];
+    if (!J)
+      continue;
+    memcpy(J + row * stride, e->slopes + i * e->unknowns, e->unknowns * sizeof *J);
+    J[row * stride + next + i] -= 1;
+  }
+}
+
+void cycle_equations_at(cycle_equations *e, const double *x, double *F, double *J, size_t stride, double *clearance) {
+  const double *y = x + e->pieces * e->map.size;
+  for (size_t piece = 0, which = 0; piece < e->pieces; piece++) {
+    begin_piece(e, piece, x);
+    for (size_t k = e->starts[piece]; k < e->starts[piece + 1]; k++) {
+      if (clearance)
+        clearance[k] = e->hits[k] ? y[which] : dot(e->map.eta, e->z, e->map.size) - e->d;
+      if (e->hits[k])
+        impact_row(e, y[which], which, F, J, stride);
+      advance(e, J != NULL);
+      if (e->hits[k]) {
+        add_impact(e, y[which], which);
+        which++;
+      }
+    }
+    closing_rows(e, piece, x, F, J, stride);
+  }
+}
+
+ric_status cycle_equations_spectrum(cycle_equations *e, const double *x, ric_error *error) {
+  const ric_grazing_map *map = &e->map;
+  size_t m = map->size;
+  const double *y = x + e->pieces * m;
+  set_identity(e->slopes, m);
+  for (size_t k = 0; k < e->period; k++) {
+    apply(map, e->slopes, m, e->next_slopes);
+    for (size_t c = 0; c < m && e->hits[k]; c++) {
+      double fall = 0;
+      for (size_t i = 0; i < m; i++)
+        fall += map->eta[i] * e->slopes[i * m + c];
+      for (size_t i = 0; i < m; i++) /* [FN97] (5.11), no infinity times 0 at the border */
+        e->next_slopes[i * m + c] -=
+            (map->kappa[i] + (map->xi[i] != 0 ? map->stretch / (2 * *y) * map->xi[i] : 0)) * fall;
+    }
+    y += e->hits[k];
+    swap(&e->slopes, &e->next_slopes);
+  }
+  for (size_t i = 0; i < m * m; i++)
+    if (!isfinite(e->slopes[i]))
+      return ric_fail(error, RIC_ENUMERIC, "the derivative of iterate %zu overflows at p = %.17g", e->period,
+                      e->parameter);
+  return ric_multipliers_of_matrix(e->slopes, m, 0, NULL, &e->multipliers, error);
+}
+
+/* Whether the cycle has come back after so many iterates: the impacts are those of the beginning, and the y and first
+ * states as well. Iterates without impacts forget nothing. */
+static bool repeats_after(const cycle_equations *e, size_t part, const double *y, double largest) {
+  size_t first = 0, second = 0;
+  for (size_t k = 0; k < part; k++)
+    second += e->hits[k];
+  for (size_t k = 0; k + part < e->period; k++) {
+    if (e->hits[k] != e->hits[k + part])
+      return false;
+    if (e->hits[k] && !(fabs(y[first++] - y[second++]) <= same * largest))
+      return false;
+  }
+  return true;
+}
+
+size_t cycle_equations_least_period(cycle_equations *e, const double *x) {
+  const double *y = x + e->pieces * e->map.size;
+  double largest = largest_of(y, e->impacts);
+  for (size_t part = 1; part < e->period; part++)
+    if (e->period % part == 0 && repeats_after(e, part, y, largest))
+      return part;
+  return e->period;
+}

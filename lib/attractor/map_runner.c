@@ -1,0 +1,448 @@
+#include "ricochet/attractor.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <gsl/gsl_errno.h>
+
+#include "map_block.h"
+#include "orthonormal.h"
+#include "period.h"
+
+enum {
+  PIECE = 16,  /* iterates at a time: their states stay near the processor */
+  LOOK = 64,   /* iterates between two looks at the bound */
+  CYCLE = 64,  /* longest cycle that is looked for to the bit */
+  REVIEW = 512 /* iterates from one such look to the next */
+};
+
+static const double rounding = 1e-12;   /* of states that return, relative to the largest number */
+static const size_t align_time = 256;   /* iterates before those measured in which tangent vectors find their places */
+static const size_t poll_work = 100000; /* products between two polls: well below a millisecond */
+
+struct ric_map_runner {
+  ric_attractor_options options;
+  map_kernel kernel;
+  map_block block;
+  size_t piece;
+  double *numbers;    /* holds: */
+  double *trace;      /* [longest + 1][size][width] states, of which the first is the present one */
+  double *sound;      /* [size][width] at the last look */
+  double *measured;   /* [size][width] after the iterates measured */
+  double *impacts;    /* [width] counted at the last look, or after the iterates measured */
+  double *length;     /* [exponents][width] logarithms of the lengths when measuring began */
+  double *orbit;      /* [2 period_limit + 1][size] of one map */
+  double *directions; /* [exponents][size] in which tangent vectors set out */
+  size_t *cycle;      /* [width] how long it is, to the bit */
+  bool *lost;         /* [width] diverged */
+  /* of a block on its way: */
+  ric_attractor *attractors;
+  size_t count, left;  /* how many; have not diverged */
+  size_t done, looked; /* iterates; at the last look */
+  size_t counted;      /* iterates over which `impacts` are */
+  size_t work;         /* since the last poll */
+};
+
+/* --- life --------------------------------------------------------------------------------------------------------- */
+
+bool ric_map_lanes_available(ric_map_lanes lanes) {
+  return map_kernel_of(lanes).advance != NULL;
+}
+
+ric_map_lanes ric_map_lanes_widest(void) {
+  int lanes = RIC_MAP_LANES_KINDS - 1;
+  while (!ric_map_lanes_available((ric_map_lanes)lanes))
+    lanes--;
+  return (ric_map_lanes)lanes;
+}
+
+static double *take(double **store, size_t count) {
+  double *taken = *store;
+  *store += count;
+  return taken;
+}
+
+static ric_status allocate(ric_map_runner *r, size_t size, ric_error *error) {
+  const ric_attractor_options *o = &r->options;
+  size_t width = r->kernel.width, state = size * width, longest = 2 * o->period_limit;
+  RIC_TRY(map_block_init(&r->block, size, width, o->exponents, error));
+  if (longest < CYCLE)
+    longest = CYCLE;
+  size_t numbers = (longest + 3) * state + (1 + o->exponents) * width + (longest + 1 + o->exponents) * size;
+  double *store = r->numbers = aligned_alloc(64, (numbers * sizeof *store / 64 + 1) * 64);
+  r->lost = calloc(width, sizeof *r->lost);
+  r->cycle = calloc(width, sizeof *r->cycle);
+  if (!store || !r->lost || !r->cycle)
+    return ric_fail(error, RIC_ENOMEM, "no memory for %zu iterates of %zu maps of size %zu", longest, width, size);
+  r->trace = take(&store, (longest + 1) * state);
+  r->sound = take(&store, state);
+  r->measured = take(&store, state);
+  r->impacts = take(&store, width);
+  r->length = take(&store, o->exponents * width);
+  r->orbit = take(&store, (longest + 1) * size);
+  r->directions = take(&store, o->exponents * size);
+  return RIC_OK;
+}
+
+/* Numbers with no pattern, always the same ones, made orthonormal. */
+static ric_status set_directions(ric_map_runner *r, ric_error *error) {
+  size_t size = r->block.size, count = r->options.exponents;
+  orthonormal_work work = {0};
+  if (count == 0)
+    return RIC_OK;
+  double *x = malloc((size * count + count) * sizeof *x);
+  ric_status status = x ? orthonormal_init(&work, size, count, error)
+                        : ric_fail(error, RIC_ENOMEM, "no memory for %zu tangent vectors", count);
+  if (status == RIC_OK) {
+    uint64_t state = 1;
+    for (size_t i = 0; i < size * count; i++) {
+      state = state * 6364136223846793005u + 1442695040888963407u;
+      x[i] = (double)(state >> 11) / 0x1p52 - 1;
+    }
+    orthonormal_make(&work, x, x + size * count);
+    for (size_t k = 0; k < count; k++)
+      for (size_t i = 0; i < size; i++)
+        r->directions[k * size + i] = x[i * count + k];
+  }
+  orthonormal_clear(&work);
+  free(x);
+  return status;
+}
+
+ric_status ric_map_runner_create(size_t size, const ric_attractor_options *options, ric_map_lanes lanes,
+                                 ric_map_runner **runner, ric_error *error) {
+  ric_attractor_options o = options ? *options : ric_attractor_options_default();
+  *runner = NULL;
+  if (size < 1)
+    return ric_fail(error, RIC_EINVAL, "size = 0, expected at least 1");
+  RIC_TRY(ric_attractor_options_check(&o, size, error));
+  if (!ric_map_lanes_available(lanes))
+    return ric_fail(error, RIC_EINVAL, "lanes = %s, which this processor has not", ric_map_lanes_name(lanes));
+  ric_map_runner *r = calloc(1, sizeof *r);
+  if (!r)
+    return ric_fail(error, RIC_ENOMEM, "no memory for a runner of maps");
+  r->options = o;
+  r->kernel = map_kernel_of(lanes);
+  size_t fit = 4096 / (size * (1 + o.exponents)) / size; /* a piece is not long, that the poll is asked in time */
+  r->piece = fit < 1 ? 1 : fit < PIECE ? fit : PIECE;
+  gsl_error_handler_t *handler = gsl_set_error_handler_off();
+  ric_status status = allocate(r, size, error);
+  if (status == RIC_OK)
+    status = set_directions(r, error);
+  gsl_set_error_handler(handler);
+  if (status != RIC_OK)
+    ric_map_runner_destroy(&r);
+  *runner = r;
+  return status;
+}
+
+void ric_map_runner_destroy(ric_map_runner **runner) {
+  if (!runner || !*runner)
+    return;
+  map_block_clear(&(*runner)->block);
+  free((*runner)->numbers);
+  free((*runner)->lost);
+  free((*runner)->cycle);
+  free(*runner);
+  *runner = NULL;
+}
+
+/* --- what is seen of a block -------------------------------------------------------------------------------------- */
+
+/* Minus zero, of which no result tells whether a product of zero was left out, becomes zero. */
+static double plain(double x) {
+  return x + 0.0;
+}
+
+static void copy_lane(const ric_map_runner *r, const double *state, size_t lane, double *z) {
+  for (size_t i = 0; i < r->block.size; i++)
+    z[i] = plain(state[i * r->block.width + lane]);
+}
+
+/* Stores iterates done + 1 ... done + count. */
+static void store(const ric_map_runner *r, const double *first, size_t count) {
+  size_t size = r->block.size, width = r->block.width, from = r->done - r->options.transient;
+  for (size_t l = 0; l < r->count; l++) {
+    const ric_attractor *a = &r->attractors[l];
+    for (size_t k = 0; k < count && !r->lost[l]; k++) {
+      const double *state = first + k * size * width;
+      if (a->values)
+        a->values[from + k] = plain(state[r->options.observe * width + l]);
+      if (a->states)
+        copy_lane(r, state, l, a->states + (from + k) * size);
+    }
+  }
+}
+
+/* Nothing is known of what was stored from iterate `first` + 1 on. */
+static void unstore(const ric_map_runner *r, ric_attractor *a, size_t first) {
+  size_t size = r->block.size, transient = r->options.transient;
+  for (size_t k = first > transient ? first - transient : 0; k < r->options.keep; k++) {
+    if (a->values)
+      a->values[k] = NAN;
+    for (size_t i = 0; i < size && a->states; i++)
+      a->states[k * size + i] = NAN;
+  }
+}
+
+/* A value has diverged: the state of its lane is put where nothing happens any more. */
+static void lose(ric_map_runner *r, double *state, size_t lane) {
+  size_t size = r->block.size, width = r->block.width;
+  r->lost[lane] = true;
+  r->block.d[lane] = -1;
+  for (size_t i = 0; i < size; i++)
+    state[i * width + lane] = 0;
+  if (lane >= r->count)
+    return;
+  r->left--;
+  ric_attractor *a = &r->attractors[lane];
+  copy_lane(r, r->sound, lane, a->z);
+  unstore(r, a, r->looked);
+  for (size_t k = 0; k < r->options.exponents && a->exponents; k++)
+    a->exponents[k] = NAN;
+  for (size_t i = 0; i < size && a->lowest; i++)
+    a->lowest[i] = NAN;
+  a->kind = RIC_ATTRACTOR_DIVERGED;
+  a->period = 0;
+  a->impacts = r->counted > 0 ? r->impacts[lane] / (double)r->counted : NAN;
+  a->iterates = r->done;
+  snprintf(a->reason, sizeof a->reason, "a number of the state came beyond %g by iterate %zu", r->options.bound,
+           r->done);
+}
+
+static bool all_within(const double *numbers, size_t count, double bound) {
+  size_t beyond = 0;
+  for (size_t i = 0; i < count; i++)
+    beyond += !(fabs(numbers[i]) <= bound);
+  return beyond == 0;
+}
+
+static bool lane_within(const ric_map_runner *r, const double *state, size_t lane) {
+  for (size_t i = 0; i < r->block.size; i++)
+    if (!(fabs(state[i * r->block.width + lane]) <= r->options.bound))
+      return false;
+  return true;
+}
+
+/* Looks whether maps have diverged. */
+static void look(ric_map_runner *r, double *state) {
+  size_t width = r->block.width, numbers = r->block.size * width, first = r->options.transient;
+  if (!all_within(state, numbers, r->options.bound))
+    for (size_t l = 0; l < width; l++)
+      if (!lane_within(r, state, l))
+        lose(r, state, l);
+  memcpy(r->sound, state, numbers * sizeof *state);
+  r->looked = r->done;
+  if (r->done > first && r->done - first <= r->options.measure) {
+    memcpy(r->impacts, r->block.impacts, width * sizeof *r->impacts);
+    r->counted = r->done - first;
+  }
+}
+
+/* --- the course of a block ---------------------------------------------------------------------------------------- */
+
+static size_t least(size_t a, size_t b) {
+  return a < b ? a : b;
+}
+
+/* Goes on from a state in the trace, at most to the next look. @returns RIC_ESTOPPED */
+static ric_status go(ric_map_runner *r, double *state, size_t count, ric_error *error) {
+  size_t size = r->block.size;
+  r->kernel.advance(&r->block, state, count);
+  r->work += count * size * r->block.width * (size + 1) * (1 + r->block.vectors);
+  if (r->work < poll_work)
+    return RIC_OK;
+  r->work = 0;
+  return ric_poll_stops(r->options.poll) ? ric_fail(error, RIC_ESTOPPED, "stopped by the poll callback") : RIC_OK;
+}
+
+/* Iterates, the last state being the first of the trace again. @param keeps  stores them */
+static ric_status advance(ric_map_runner *r, size_t until, bool keeps, ric_error *error) {
+  size_t state = r->block.size * r->block.width;
+  while (r->done < until && r->left > 0) {
+    size_t count = least(least(r->piece, until - r->done), LOOK - r->done % LOOK);
+    double *last = r->trace + count * state;
+    RIC_TRY(go(r, r->trace, count, error));
+    if (keeps)
+      store(r, r->trace + state, count);
+    r->done += count;
+    if (r->done % LOOK == 0 || r->done == until)
+      look(r, last);
+    memcpy(r->trace, last, state * sizeof *last);
+  }
+  return RIC_OK;
+}
+
+/* As many as leave their states in the trace. */
+static ric_status record(ric_map_runner *r, size_t count, ric_error *error) {
+  size_t state = r->block.size * r->block.width;
+  double *at = r->trace;
+  for (size_t until = r->done + count; r->done < until && r->left > 0;) {
+    size_t next = least(least(r->piece, until - r->done), LOOK - r->done % LOOK);
+    RIC_TRY(go(r, at, next, error));
+    r->done += next;
+    at += next * state;
+    if (r->done % LOOK == 0 || r->done == until)
+      look(r, at);
+  }
+  return RIC_OK;
+}
+
+/* After how many iterates a lane is exactly where it was when the trace began; 0: it is not so within it, or beyond the
+ * bound on the way, which would be seen. */
+static size_t cycle_of_lane(const ric_map_runner *r, size_t lane) {
+  size_t size = r->block.size, width = r->block.width;
+  for (size_t k = 1; k <= CYCLE; k++) {
+    const double *state = r->trace + k * size * width;
+    size_t same = 0;
+    while (same < size && state[same * width + lane] == r->trace[same * width + lane])
+      same++;
+    if (same == size)
+      return k;
+    if (!lane_within(r, state, lane))
+      return 0;
+  }
+  return 0;
+}
+
+/* Where all maps of a block have come to cycles, to the bit, what follows is known until iterate `until`: there they
+ * are then. */
+static bool skip(ric_map_runner *r, size_t until) {
+  size_t size = r->block.size, width = r->block.width, ahead = until - r->done + CYCLE;
+  for (size_t l = 0; l < width; l++)
+    if ((r->cycle[l] = cycle_of_lane(r, l)) == 0)
+      return false;
+  for (size_t l = 0; l < width; l++)
+    for (size_t i = 0; i < size; i++)
+      r->trace[i * width + l] = r->trace[(ahead % r->cycle[l] * size + i) * width + l];
+  r->done = until;
+  look(r, r->trace);
+  return true;
+}
+
+/* The iterates of which nothing is wanted but where they lead. */
+static ric_status settle(ric_map_runner *r, size_t until, ric_error *error) {
+  size_t state = r->block.size * r->block.width;
+  while (r->done < until && r->left > 0) {
+    RIC_TRY(advance(r, least(until, r->done + REVIEW - CYCLE), false, error));
+    if (until - r->done < REVIEW)
+      return advance(r, until, false, error);
+    size_t left = r->left;
+    RIC_TRY(record(r, CYCLE, error));
+    if (r->left == left && skip(r, until))
+      return RIC_OK;
+    memcpy(r->trace, r->trace + CYCLE * state, state * sizeof *r->trace);
+  }
+  return RIC_OK;
+}
+
+/* Logarithm of the length of a tangent vector. */
+static double length_of(const map_block *b, size_t vector, size_t lane) {
+  size_t at = vector * b->width + lane;
+  return log(b->norm[at]) / 2 + (double)b->power[at] * log(2);
+}
+
+static void begin_measuring(ric_map_runner *r) {
+  for (size_t l = 0; l < r->block.width; l++) {
+    r->block.impacts[l] = 0;
+    for (size_t k = 0; k < r->block.vectors; k++)
+      r->length[k * r->block.width + l] = length_of(&r->block, k, l);
+  }
+}
+
+/* A vector that has been put out is zero, one that came to the border not finite. */
+static void set_exponents(const ric_map_runner *r, size_t lane, double *exponents) {
+  for (size_t k = 0; k < r->block.vectors; k++) {
+    double norm = r->block.norm[k * r->block.width + lane];
+    double growth = length_of(&r->block, k, lane) - r->length[k * r->block.width + lane];
+    exponents[k] = norm == 0 ? -INFINITY : isfinite(norm) ? growth / (double)r->options.measure : NAN;
+  }
+}
+
+static void end_measuring(ric_map_runner *r) {
+  memcpy(r->measured, r->trace, r->block.size * r->block.width * sizeof *r->trace);
+  for (size_t l = 0; l < r->count; l++)
+    if (!r->lost[l] && r->attractors[l].exponents)
+      set_exponents(r, l, r->attractors[l].exponents);
+  r->block.vectors = 0;
+}
+
+/* A map that has come to the end of its run. */
+static void finish(ric_map_runner *r, size_t lane) {
+  const ric_attractor_options *o = &r->options;
+  size_t size = r->block.size;
+  ric_attractor *a = &r->attractors[lane];
+  for (size_t k = 0; k <= 2 * o->period_limit; k++)
+    copy_lane(r, r->trace + k * size * r->block.width, lane, r->orbit + k * size);
+  a->period = period_find(r->orbit, size, size, o->period_limit, o->period_tol, rounding);
+  a->kind = a->period > 0 ? RIC_ATTRACTOR_PERIODIC : RIC_ATTRACTOR_APERIODIC;
+  a->impacts = r->impacts[lane] / (double)o->measure;
+  a->iterates = o->transient + o->measure;
+  a->reason[0] = 0;
+  copy_lane(r, r->measured, lane, a->z);
+  if (a->lowest)
+    memcpy(a->lowest, r->orbit + size * period_lowest(r->orbit, size, 2 * o->period_limit + 1, o->observe),
+           size * sizeof *a->lowest);
+}
+
+static void begin(ric_map_runner *r, const ric_grazing_map *const *maps, const double *d, ric_attractor *attractors,
+                  size_t count) {
+  size_t width = r->block.width;
+  map_block_load(&r->block, maps, d, count);
+  r->attractors = attractors;
+  r->count = r->left = count;
+  r->done = r->looked = r->counted = 0;
+  for (size_t l = 0; l < width; l++) {
+    r->lost[l] = false;
+    r->block.impacts[l] = 0;
+    for (size_t i = 0; i < r->block.size; i++)
+      r->trace[i * width + l] = attractors[l < count ? l : count - 1].z[i];
+  }
+  memcpy(r->sound, r->trace, r->block.size * width * sizeof *r->trace);
+}
+
+static ric_status run_block(ric_map_runner *r, ric_error *error) {
+  const ric_attractor_options *o = &r->options;
+  size_t aligning = o->exponents > 0 ? least(o->transient, align_time) : 0;
+  RIC_TRY(settle(r, o->transient - aligning, error));
+  map_block_carry(&r->block, r->directions, o->exponents);
+  RIC_TRY(advance(r, o->transient, false, error));
+  begin_measuring(r);
+  RIC_TRY(advance(r, o->transient + o->keep, true, error));
+  RIC_TRY(advance(r, o->transient + o->measure, false, error));
+  end_measuring(r);
+  RIC_TRY(record(r, 2 * o->period_limit, error));
+  for (size_t l = 0; l < r->count; l++)
+    if (!r->lost[l])
+      finish(r, l);
+  return RIC_OK;
+}
+
+static ric_status check(const ric_map_runner *r, size_t i, const ric_grazing_map *map, double d, const ric_attractor *a,
+                        ric_error *error) {
+  size_t size = r->block.size;
+  ric_error inner;
+  if (map->size != size)
+    return ric_fail(error, RIC_EINVAL, "maps[%zu] has the size %zu, expected %zu", i, map->size, size);
+  if (ric_grazing_map_check(map, &inner) != RIC_OK)
+    return ric_fail(error, inner.status, "maps[%zu]: %s", i, inner.message);
+  if (!isfinite(d))
+    return ric_fail(error, RIC_EINVAL, "d[%zu] = %g, expected a finite number", i, d);
+  for (size_t k = 0; k < size; k++)
+    if (!isfinite(a->z[k]))
+      return ric_fail(error, RIC_EINVAL, "z[%zu] = %g of attractors[%zu], expected a finite number", k, a->z[k], i);
+  return RIC_OK;
+}
+
+ric_status ric_map_runner_run(ric_map_runner *r, size_t count, const ric_grazing_map *const *maps, const double *d,
+                              ric_attractor *attractors, ric_error *error) {
+  for (size_t i = 0; i < count; i++)
+    RIC_TRY(check(r, i, maps[i], d[i], &attractors[i], error));
+  for (size_t first = 0; first < count; first += r->block.width) {
+    begin(r, maps + first, d + first, attractors + first, least(count - first, r->block.width));
+    RIC_TRY(run_block(r, error));
+  }
+  return RIC_OK;
+}

@@ -1,0 +1,312 @@
+#include "ricochet/motion_section.h"
+
+#include <math.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "crossings.h"
+#include "impact/trajectory_state.h"
+#include "period.h"
+
+/* Iterates before the measured ones over which tangent vectors turn to where they belong. */
+enum { ALIGNING = 64 };
+
+/* What slow impacts make of the rounding of a state, relative to it: 3e-11 was seen at speeds of 0.02. */
+static const double NOISE = 1e-9;
+
+struct ric_motion_section {
+  crossings crossings;
+  lyapunov_course course;
+  double *window; /* the states that decide about the period */
+  size_t window_room;
+};
+
+ric_motion_section_options ric_motion_section_options_default(double period) {
+  return (ric_motion_section_options){
+      .period = period, .obstacle = SIZE_MAX, .wait = 1000, .trajectory = ric_trajectory_options_default()};
+}
+
+static ric_status check_period(const ric_motion_section_options *o, ric_error *error) {
+  bool none = o->kind == RIC_SECTION_IMPACT;
+  if ((o->period > 0 || (none && o->period == 0)) && o->period < INFINITY)
+    return RIC_OK;
+  return ric_fail(error, RIC_EINVAL, "period = %g, expected a finite number > 0%s", o->period,
+                  none ? " (or 0: none)" : "");
+}
+
+static ric_status check_obstacle(const ric_system *system, const ric_motion_section_options *o, ric_error *error) {
+  if (system->obstacle_count == 0)
+    return ric_fail(error, RIC_EINVAL, "section = impact, expected a system with obstacles");
+  if (o->obstacle != SIZE_MAX && o->obstacle >= system->obstacle_count)
+    return ric_fail(error, RIC_EINVAL, "obstacle = %zu, expected at most %zu", o->obstacle, system->obstacle_count - 1);
+  if (!(o->wait > 0 && o->wait < INFINITY))
+    return ric_fail(error, RIC_EINVAL, "wait = %g, expected a finite number > 0", o->wait);
+  return RIC_OK;
+}
+
+static ric_status check(const ric_system *system, const ric_motion_section_options *o, ric_error *error) {
+  if (o->kind != RIC_SECTION_STROBE && o->kind != RIC_SECTION_IMPACT)
+    return ric_fail(error, RIC_EINVAL, "section = %d, expected strobe or impact", (int)o->kind);
+  RIC_TRY(check_period(o, error));
+  if (o->kind == RIC_SECTION_IMPACT)
+    return check_obstacle(system, o, error);
+  if (!(o->phase >= 0 && o->phase < 1))
+    return ric_fail(error, RIC_EINVAL, "phase = %g, expected 0 <= phase < 1", o->phase);
+  return RIC_OK;
+}
+
+ric_status ric_motion_section_create(const ric_system *system, const ric_motion_section_options *options,
+                                     ric_motion_section **section, ric_error *error) {
+  *section = NULL;
+  RIC_TRY(check(system, options, error));
+  ric_motion_section *s = calloc(1, sizeof *s);
+  if (!s)
+    return ric_fail(error, RIC_ENOMEM, "no memory for a section of motions");
+  ric_status status = crossings_init(&s->crossings, system, options, error);
+  if (status != RIC_OK)
+    ric_motion_section_destroy(&s);
+  *section = s;
+  return status;
+}
+
+void ric_motion_section_destroy(ric_motion_section **section) {
+  if (!section || !*section)
+    return;
+  crossings_clear(&(*section)->crossings);
+  lyapunov_course_clear(&(*section)->course);
+  free((*section)->window);
+  free(*section);
+  *section = NULL;
+}
+
+size_t ric_motion_section_size(const ric_motion_section *section) {
+  return section->crossings.size;
+}
+
+ric_status ric_motion_section_set_period(ric_motion_section *section, double period, ric_error *error) {
+  crossings *c = &section->crossings;
+  ric_motion_section_options o = c->options;
+  o.period = period;
+  RIC_TRY(check_period(&o, error));
+  if (o.kind == RIC_SECTION_IMPACT && (period > 0) != (c->options.period > 0))
+    return ric_fail(error, RIC_EINVAL, "period = %g, expected %s: states on the section would be of another size",
+                    period, period > 0 ? "0, as before" : "> 0, as before");
+  c->options.period = period;
+  return RIC_OK;
+}
+
+/* --- one attractor ------------------------------------------------------------------------------------------------ */
+
+/* A run on its way. */
+typedef struct journey {
+  ric_motion_section *section;
+  const ric_attractor_options *options;
+  ric_attractor *attractor;
+  size_t width; /* numbers of a state in the window */
+  size_t done;  /* iterates */
+  bool over;    /* diverged or failed */
+} journey;
+
+/* A state for comparisons: where the forcing is becomes a point on a circle, so that the ends of a period are near. */
+static void put_in_window(const journey *j, const double *z, size_t k) {
+  const crossings *c = &j->section->crossings;
+  double *row = j->section->window + k * j->width;
+  size_t numbers = c->n + c->m;
+  memcpy(row, z, numbers * sizeof *row);
+  if (c->size > numbers) {
+    double radius = c->options.period / 6.28318530717958647692;
+    row[numbers] = radius * cos(z[numbers] / radius);
+    row[numbers + 1] = radius * sin(z[numbers] / radius);
+  }
+}
+
+/* The last state behind the measured ones, as it is. */
+static double *last_of(const journey *j) {
+  return j->section->window + (2 * j->options->period_limit + 1) * j->width;
+}
+
+static void take(journey *j, const double *z) {
+  const ric_attractor_options *o = j->options;
+  ric_attractor *a = j->attractor;
+  size_t size = j->section->crossings.size, measured = o->transient + o->measure;
+  j->done++;
+  if (j->done <= measured)
+    memcpy(a->z, z, size * sizeof *z);
+  else
+    memcpy(last_of(j), z, size * sizeof *z);
+  if (j->done >= measured)
+    put_in_window(j, z, j->done - measured);
+  if (j->done <= o->transient || j->done > o->transient + o->keep)
+    return;
+  size_t kept = j->done - o->transient - 1;
+  if (a->values)
+    a->values[kept] = z[o->observe];
+  if (a->states)
+    memcpy(a->states + kept * size, z, size * sizeof *z);
+}
+
+static void end(journey *j, ric_attractor_kind kind, const char *reason) {
+  ric_attractor *a = j->attractor;
+  size_t transient = j->options->transient, measured = transient + j->options->measure;
+  j->over = true;
+  a->kind = kind;
+  a->iterates = j->done;
+  snprintf(a->reason, sizeof a->reason, "%.*s", (int)sizeof a->reason - 1, reason);
+  if (j->done > transient && j->done < measured)
+    a->impacts = (double)j->section->crossings.impacts / (double)(j->done - transient);
+  if (j->done > measured)
+    memcpy(a->z, last_of(j), j->section->crossings.size * sizeof *a->z);
+}
+
+/* Takes the crossings that were found, up to one that is out of bounds. */
+static void take_all(journey *j) {
+  const crossings *c = &j->section->crossings;
+  char reason[128];
+  for (size_t k = 0; k < c->found; k++) {
+    const double *z = c->states + k * c->size;
+    for (size_t i = 0; i < c->n + c->m; i++)
+      if (!(fabs(z[i]) <= j->options->bound)) {
+        snprintf(reason, sizeof reason, "number %zu of the state is %g", i, z[i]);
+        end(j, RIC_ATTRACTOR_DIVERGED, reason);
+        return;
+      }
+    take(j, z);
+  }
+}
+
+static void say_why(journey *j, const ric_run *run) {
+  char reason[320];
+  if (run->outcome == RIC_RUN_COMPLETED)
+    snprintf(reason, sizeof reason, "%s", run->reason);
+  else
+    snprintf(reason, sizeof reason, "%s: %s", ric_run_outcome_name(run->outcome), run->reason);
+  end(j, run->outcome == RIC_RUN_BLOW_UP ? RIC_ATTRACTOR_DIVERGED : RIC_ATTRACTOR_FAILED, reason);
+}
+
+/* So many iterates more. */
+static ric_status go_on(journey *j, size_t count, ric_error *error) {
+  crossings *c = &j->section->crossings;
+  for (size_t left = count, asked; left > 0 && !j->over; left -= asked) {
+    ric_run run;
+    asked = left < CROSSINGS_MOST ? left : CROSSINGS_MOST;
+    RIC_TRY(crossings_next(c, asked, &run, error));
+    take_all(j);
+    if (!j->over && c->found < asked)
+      say_why(j, &run);
+  }
+  return RIC_OK;
+}
+
+/* --- exponents ---------------------------------------------------------------------------------------------------- */
+
+static ric_status prepare_course(ric_motion_section *s, size_t count, ric_error *error) {
+  ric_lyapunov_options o = ric_lyapunov_options_default();
+  o.count = count;
+  o.interval = s->crossings.options.period > 0 ? s->crossings.options.period : 1; /* problems are dimensionless */
+  if (s->course.count != count) {
+    lyapunov_course_clear(&s->course);
+    RIC_TRY(lyapunov_course_init(&s->course, s->crossings.trajectory, &o, error));
+  }
+  s->course.options = o;
+  lyapunov_course_restart(&s->course);
+  return RIC_OK;
+}
+
+/* The iterates before the measured ones, the last of them with tangent vectors. */
+static ric_status settle(journey *j, ric_error *error) {
+  const ric_attractor_options *o = j->options;
+  size_t aligning = o->exponents == 0 ? 0 : o->transient < ALIGNING ? o->transient : ALIGNING;
+  RIC_TRY(go_on(j, o->transient - aligning, error));
+  if (o->exponents == 0 || j->over)
+    return RIC_OK;
+  RIC_TRY(prepare_course(j->section, o->exponents, error));
+  j->section->crossings.course = &j->section->course;
+  return go_on(j, aligning, error);
+}
+
+static ric_status measure(journey *j, ric_error *error) {
+  const ric_attractor_options *o = j->options;
+  crossings *c = &j->section->crossings;
+  c->impacts = 0;
+  if (c->course)
+    lyapunov_course_forget(c->course);
+  RIC_TRY(go_on(j, o->measure, error));
+  if (j->over)
+    return RIC_OK;
+  j->attractor->impacts = (double)c->impacts / (double)o->measure;
+  for (size_t k = 0; c->course && k < o->exponents; k++)
+    j->attractor->exponents[k] = c->course->sum[k] / (double)o->measure;
+  return RIC_OK;
+}
+
+static ric_status decide(journey *j, ric_error *error) {
+  size_t limit = j->options->period_limit;
+  ric_attractor *a = j->attractor;
+  j->section->crossings.course = NULL;
+  RIC_TRY(ric_trajectory_carry(j->section->crossings.trajectory, 0, NULL, NULL, error));
+  RIC_TRY(go_on(j, 2 * limit, error));
+  if (j->over)
+    return RIC_OK;
+  a->iterates = j->options->transient + j->options->measure;
+  a->period = period_find(j->section->window, j->width, j->width, limit, j->options->period_tol, NOISE);
+  a->kind = a->period ? RIC_ATTRACTOR_PERIODIC : RIC_ATTRACTOR_APERIODIC;
+  if (a->lowest) {
+    size_t lowest = period_lowest(j->section->window, j->width, 2 * limit + 1, j->options->observe);
+    memcpy(a->lowest, j->section->window + lowest * j->width, j->section->crossings.size * sizeof *a->lowest);
+  }
+  return RIC_OK;
+}
+
+static ric_status travel(journey *j, ric_error *error) {
+  RIC_TRY(settle(j, error));
+  if (!j->over)
+    RIC_TRY(measure(j, error));
+  return j->over ? RIC_OK : decide(j, error);
+}
+
+static ric_status make_room(ric_motion_section *s, size_t width, size_t limit, ric_error *error) {
+  size_t room = (2 * limit + 2) * width; /* with the last state as it is */
+  if (room <= s->window_room)
+    return RIC_OK;
+  free(s->window);
+  s->window_room = 0;
+  s->window = malloc(room * sizeof *s->window);
+  if (!s->window)
+    return ric_fail(error, RIC_ENOMEM, "no memory for %zu states of %zu numbers", 2 * limit + 1, width);
+  s->window_room = room;
+  return RIC_OK;
+}
+
+static void clear_results(const ric_attractor_options *o, size_t size, ric_attractor *a) {
+  a->period = a->iterates = 0;
+  a->impacts = NAN;
+  a->reason[0] = '\0';
+  for (size_t k = 0; k < o->exponents; k++)
+    a->exponents[k] = NAN;
+  for (size_t i = 0; a->lowest && i < size; i++)
+    a->lowest[i] = NAN;
+  for (size_t k = 0; a->values && k < o->keep; k++)
+    a->values[k] = NAN;
+  for (size_t k = 0; a->states && k < o->keep * size; k++)
+    a->states[k] = NAN;
+}
+
+ric_status ric_motion_section_run(ric_motion_section *section, const ric_attractor_options *options,
+                                  ric_attractor *attractor, ric_error *error) {
+  crossings *c = &section->crossings;
+  ric_attractor_options o = options ? *options : ric_attractor_options_default();
+  size_t numbers = c->n + c->m;
+  journey j = {.section = section, .options = &o, .attractor = attractor};
+  RIC_TRY(ric_attractor_options_check(&o, c->size, error));
+  if (o.exponents > numbers)
+    return ric_fail(error, RIC_EINVAL, "exponents = %zu, expected at most %zu", o.exponents, numbers);
+  j.width = c->size > numbers ? c->size + 1 : c->size;
+  RIC_TRY(make_room(section, j.width, o.period_limit, error));
+  c->course = NULL;
+  c->trajectory->options.poll = o.poll.call ? o.poll : c->options.trajectory.poll;
+  RIC_TRY(crossings_start(c, attractor->z, error));
+  clear_results(&o, c->size, attractor);
+  return travel(&j, error);
+}

@@ -1,0 +1,277 @@
+#include "ricochet/motion_window.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "motion_record.h"
+
+enum { MOST_TRIES = 5 };
+
+/* Steps of a walk that has passed the end of the window without a special point are shortened by it. */
+static const double shorter = 0.25;
+
+/* Motions of a shorter period come back within it, over the largest number of their states. */
+static const double same = 1e-8;
+
+/* Special points are located to it, relative to p. */
+static const double locate_tol = 1e-12;
+
+/* The family, whose parameter is p / scale: lengths of its curve are then in parts of p. */
+typedef struct search {
+  const ric_family_problem *problem; /* the caller's */
+  double scale, p, low, high;
+  size_t periods;
+  ric_family_problem scaled;
+  ric_family_options options;
+  motion_record record;
+  size_t unknowns;
+  double *z, *last; /* [unknowns] the motion at p, and the last one on the way that attracts */
+  double last_at;   /* its parameter, scaled */
+  ric_motion_window window;
+} search;
+
+static ric_status set_scaled(ric_system *system, const double *parameters, double *given, void *user,
+                             ric_error *error) {
+  const search *s = user;
+  const double p[2] = {parameters[0] * s->scale, s->problem->second};
+  if (s->problem->set)
+    return s->problem->set(system, p, given, s->problem->user, error);
+  *given = p[0];
+  return RIC_OK;
+}
+
+/* --- the motion --------------------------------------------------------------------------------------------------- */
+
+static ric_status check(const ric_family_problem *problem, size_t periods, double p, double low, double high, double t,
+                        ric_error *error) {
+  if (problem->motion.kind != RIC_MOTION_FORCED)
+    return ric_fail(error, RIC_EINVAL, "motion.kind = %d, expected forced motions", (int)problem->motion.kind);
+  if (periods < 1)
+    return ric_fail(error, RIC_EINVAL, "periods = 0, expected at least 1");
+  if (!isfinite(p))
+    return ric_fail(error, RIC_EINVAL, "p = %g, expected a finite number", p);
+  if (!(low < p))
+    return ric_fail(error, RIC_EINVAL, "low = %.9g, expected less than p = %.9g", low, p);
+  if (!(high > p))
+    return ric_fail(error, RIC_EINVAL, "high = %.9g, expected more than p = %.9g", high, p);
+  if (!isfinite(t))
+    return ric_fail(error, RIC_EINVAL, "t = %g, expected a finite number", t);
+  return RIC_OK;
+}
+
+static void set_up(search *s, const ric_family_options *options) {
+  s->scale = s->p != 0 ? fabs(s->p) : fmin(1, s->high - s->low);
+  s->scaled = *s->problem;
+  s->scaled.set = set_scaled;
+  s->scaled.user = s;
+  s->scaled.parameters = 1;
+  s->scaled.periods = s->periods;
+  s->options = options ? *options : ric_family_options_default();
+  if (!options) {
+    s->options.curve.step = 1e-3;
+    s->options.curve.locate_tol = locate_tol;
+    s->options.curve.poll = s->problem->motion.poll;
+  }
+  s->options.multipliers = true;
+}
+
+/* Of the forcing, times the periods. */
+static ric_status find_period(search *s, double *period, ric_error *error) {
+  const double at = s->p / s->scale;
+  double given = s->problem->given;
+  RIC_TRY(set_scaled(s->problem->system, &at, &given, s, error));
+  *period = given * (double)s->periods;
+  if (!(*period > 0 && isfinite(*period)))
+    return ric_fail(error, RIC_EINVAL, "period = %g, expected a finite number > 0", given);
+  return RIC_OK;
+}
+
+static double distance(const double *a, const double *b, size_t count, double *largest) {
+  double most = 0;
+  for (size_t i = 0; i < count; i++) {
+    most = fmax(most, fabs(a[i] - b[i]));
+    *largest = fmax(*largest, fabs(a[i]));
+  }
+  return most;
+}
+
+/* Multipliers of a motion that repeats before its period are powers of its own: what ends its window would be
+ * misnamed. States are compared half a forcing period after the first one, which may be at an impact. */
+static ric_status check_least(const search *s, ric_shooting *shooting, double period, ric_error *error) {
+  const size_t n = ric_system_coordinates(s->problem->system), m = ric_system_speeds(s->problem->system);
+  const size_t count = 2 * s->periods + 1;
+  double *q = calloc(count * (n + m), sizeof *q), *u = q ? q + count * n : NULL;
+  size_t least = s->periods;
+  if (!q)
+    return ric_fail(error, RIC_ENOMEM, "no memory for %zu states", count);
+  ric_status status = ric_shooting_states(shooting, s->z, period, count, q, m > 0 ? u : NULL, error);
+  for (size_t part = 1; part < least && status == RIC_OK; part++) {
+    const size_t k = 1 + 2 * part;
+    double largest = 0;
+    const double apart = fmax(distance(q + n, q + k * n, n, &largest), distance(u + m, u + k * m, m, &largest));
+    if (s->periods % part == 0 && apart <= same * largest)
+      least = part;
+  }
+  free(q);
+  if (status == RIC_OK && least < s->periods)
+    return ric_fail(error, RIC_EINVAL, "periods = %zu: the motion at p = %.9g repeats after %zu", s->periods, s->p,
+                    least);
+  return status;
+}
+
+/* Makes the motion exact. */
+static ric_status find_motion(search *s, double period, ric_error *error) {
+  const motion_record *r = &s->record;
+  ric_family *family = NULL;
+  RIC_TRY(ric_family_create(&s->scaled, &s->options, &family, error));
+  s->unknowns = ric_shooting_unknowns(ric_family_shooting(family));
+  s->z = calloc(2 * s->unknowns, sizeof *s->z);
+  s->last = s->z ? s->z + s->unknowns : NULL;
+  ric_status status = s->z ? RIC_OK : ric_fail(error, RIC_ENOMEM, "no memory for a motion of %zu impacts", r->count);
+  if (status == RIC_OK)
+    status = ric_family_start(family, s->p / s->scale, r->q, r->u, r->times, period, s->z, NULL, error);
+  if (status == RIC_OK && s->periods > 1)
+    status = check_least(s, ric_family_shooting(family), period, error);
+  ric_family_destroy(&family);
+  return status;
+}
+
+/* --- its edges ---------------------------------------------------------------------------------------------------- */
+
+typedef struct walk {
+  search *s;
+  ric_motion_edge edge;
+  bool begun, again, found, late; /* again: from a point on the way */
+} walk;
+
+static bool ends_window(ric_family_kind kind) {
+  switch (kind) {
+  case RIC_FAMILY_FOLD:
+  case RIC_FAMILY_BRANCH_POINT:
+  case RIC_FAMILY_PERIOD_DOUBLING:
+  case RIC_FAMILY_TORUS:
+  case RIC_FAMILY_GRAZING:
+  case RIC_FAMILY_IMPACT_LOST:
+  case RIC_FAMILY_IMPULSE_SIGN:
+  case RIC_FAMILY_ORDER:
+    return true;
+  default:
+    return false;
+  }
+}
+
+static bool attracts(const ric_family_point *point) {
+  return point->orbit->outcome == RIC_ADMISSIBLE && point->multipliers->stable == RIC_STABLE;
+}
+
+/* Whether a special point lies beyond the end of the window, a multiplier having left the circle before it without a
+ * change of sign that was seen. Where an impact is lost multipliers are infinite. */
+static bool comes_late(const ric_family_point *point) {
+  switch (point->kind) {
+  case RIC_FAMILY_REGULAR:
+    return point->orbit->outcome == RIC_INADMISSIBLE || point->multipliers->stable == RIC_UNSTABLE;
+  case RIC_FAMILY_IMPACT_LOST:
+  case RIC_FAMILY_IMPULSE_SIGN:
+    return true;
+  default:
+    return ends_window(point->kind) &&
+           point->multipliers->real_above + point->multipliers->real_below + point->multipliers->complex_outside > 0;
+  }
+}
+
+static int see_start(walk *w, const ric_family_point *point) {
+  ric_motion_window *window = &w->s->window;
+  w->begun = true;
+  window->stable = attracts(point);
+  window->largest = point->multipliers->count > 0 ? point->multipliers->mu[0] : (ric_complex){NAN, NAN};
+  if (!window->stable)
+    snprintf(w->edge.reason, sizeof w->edge.reason, "%s, %s", ric_outcome_name(point->orbit->outcome),
+             ric_stability_name(point->multipliers->stable));
+  return !window->stable;
+}
+
+/* Of the points that follow, verdicts next to an edge may be undecided. */
+static int see(const ric_family_point *point, void *user) {
+  walk *w = user;
+  search *s = w->s;
+  w->edge = (ric_motion_edge){.kind = point->kind, .p = point->parameter * s->scale};
+  if (!w->begun && !w->again)
+    return see_start(w, point);
+  if (point->kind == RIC_FAMILY_REGULAR && attracts(point)) {
+    memcpy(s->last, point->z, s->unknowns * sizeof *s->last);
+    s->last_at = point->parameter;
+  }
+  w->found = ends_window(point->kind);
+  w->late = comes_late(point);
+  return w->found || w->late;
+}
+
+/* From the last motion that attracts. */
+static ric_status follow(search *s, walk *w, const ric_family_options *options, ric_error *error) {
+  ric_family *family = NULL;
+  ric_curve_run run;
+  w->found = w->late = false;
+  RIC_TRY(ric_family_create(&s->scaled, options, &family, error));
+  ric_status status = ric_family_follow(family, s->last, s->last_at, NULL, see, w, &run, error);
+  ric_family_destroy(&family);
+  RIC_TRY(status);
+  if (!s->window.stable)
+    return ric_fail(error, RIC_ENUMERIC, "the motion at p = %.9g does not attract: %s", s->p, w->edge.reason);
+  if (w->late)
+    snprintf(w->edge.reason, sizeof w->edge.reason, "multipliers may have left the circle before");
+  else if (!w->found && run.end != RIC_CURVE_BOUND)
+    snprintf(w->edge.reason, sizeof w->edge.reason, "%s%s%.80s", ric_curve_end_name(run.end), run.reason[0] ? ": " : "",
+             run.reason);
+  if (!w->found)
+    w->edge.kind = RIC_FAMILY_REGULAR;
+  return RIC_OK;
+}
+
+/* Where the end may have been passed, as zeros that come in pairs are, the last step is made again, shorter. */
+static ric_status find_edge(search *s, double direction, ric_motion_edge *edge, ric_error *error) {
+  ric_family_options options = s->options;
+  walk w = {.s = s};
+  memcpy(s->last, s->z, s->unknowns * sizeof *s->z);
+  s->last_at = s->p / s->scale;
+  options.curve.direction = direction;
+  options.curve.p_low = s->low / s->scale;
+  options.curve.p_high = s->high / s->scale;
+  for (int k = 0; k < MOST_TRIES && (k == 0 || w.late); k++) {
+    RIC_TRY(follow(s, &w, &options, error));
+    w.again = true;
+    options.curve.step_most *= shorter;
+    options.curve.step = fmin(options.curve.step, options.curve.step_most);
+  }
+  *edge = w.edge;
+  return RIC_OK;
+}
+
+/* --- together ----------------------------------------------------------------------------------------------------- */
+
+static ric_status find_window(search *s, double t, const double *q, const double *u, ric_error *error) {
+  double period;
+  RIC_TRY(find_period(s, &period, error));
+  RIC_TRY(motion_record_take(&s->record, s->problem->system, &s->problem->motion, period, t, q, u, error));
+  s->scaled.motion.sequence = s->record.sequence;
+  s->scaled.motion.count = s->record.count;
+  s->window = (ric_motion_window){.periods = s->periods, .impacts = s->record.count, .p = s->p};
+  RIC_TRY(find_motion(s, period, error));
+  RIC_TRY(find_edge(s, -1, &s->window.low, error));
+  return find_edge(s, 1, &s->window.high, error);
+}
+
+ric_status ric_motion_window_find(const ric_family_problem *problem, size_t periods, double p, double low, double high,
+                                  double t, const double *q, const double *u, const ric_family_options *options,
+                                  ric_motion_window *window, ric_error *error) {
+  search s = {.problem = problem, .periods = periods, .p = p, .low = low, .high = high};
+  RIC_TRY(check(problem, periods, p, low, high, t, error));
+  set_up(&s, options);
+  ric_status status = find_window(&s, t, q, u, error);
+  if (status == RIC_OK)
+    *window = s.window;
+  motion_record_clear(&s.record);
+  free(s.z);
+  return status;
+}
