@@ -38,7 +38,7 @@ typedef struct run {
   output output;
   checkpoint *checkpoint;
   compute_result computed;
-  extra_rows extra;
+  extra_rows extras[KIND_MOST_EXTRAS];
   table offsets; /* of the tails; no columns without any */
   char *command;
   double began;
@@ -189,9 +189,10 @@ static size_t list_tables(run *r, result_table *tables, tail_source *tails) {
                                      .read = read_tail,
                                      .user = &tails[k]};
   }
-  if (r->extra.layout.column_count > 0)
-    tables[count++] =
-        (result_table){.layout = &r->extra.layout, .rows = r->extra.count, .read = read_extra, .user = &r->extra};
+  for (size_t k = 0; k < KIND_MOST_EXTRAS; k++)
+    if (r->extras[k].layout.column_count > 0)
+      tables[count++] = (result_table){
+          .layout = &r->extras[k].layout, .rows = r->extras[k].count, .read = read_extra, .user = &r->extras[k]};
   return count;
 }
 
@@ -209,7 +210,7 @@ static int write_result(run *r, message *why) {
                           .ranks = ranks_count(),
                           .tasks_computed = r->computed.computed,
                           .tasks_resumed = r->resumed};
-  result_table tables[3 + KIND_MOST_TAILS];
+  result_table tables[2 + KIND_MOST_TAILS + KIND_MOST_EXTRAS];
   tail_source tails[KIND_MOST_TAILS];
   size_t count = list_tables(r, tables, tails);
   return result_write(r->output.path, &header, tables, count, still_ours, r, why);
@@ -254,7 +255,7 @@ static int assemble(run *r, message *why) {
     code = agree_on_entries(r, why);
   const row_source done = {.read = read_done, .user = r};
   if (!code)
-    code = ranks_agree(r->kind->extra(r->study, &r->plan, &done, (ric_poll){.call = poll_stop}, &r->extra, why), why);
+    code = ranks_agree(r->kind->extra(r->study, &r->plan, &done, (ric_poll){.call = poll_stop}, r->extras, why), why);
   if (!code)
     code = write_result(r, why);
   ranks_sum(r->outcomes, 64);
@@ -351,7 +352,8 @@ int command_run(int argc, char **argv) {
     complain(code, &why); /* before a rank leaves with its code: mpirun then ends the others at once */
   ranks_finish();
   study_destroy(&r.study);
-  free(r.extra.rows);
+  for (size_t k = 0; k < KIND_MOST_EXTRAS; k++)
+    free(r.extras[k].rows);
   free(r.command);
   run_options_clear(&r.options);
   return code || !speaks ? code : finish_output(0);

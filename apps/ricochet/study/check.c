@@ -48,6 +48,8 @@ static bool is_needed(const study *s, const document *d, const schema_entry *row
     return false;
   if (!branch_traces(s) && strncmp(row->path, "branch.trace.", 13) == 0)
     return false;
+  if (!study_follows(s) && strncmp(row->path, "branch.", 7) == 0)
+    return false;
   if (!row->required || (row == schema_row(KEY_ORBIT_PERIOD) && !needs_period(s, d)))
     return false;
   if (row->models && !schema_concerns_model(row, study_model(s)))
@@ -88,13 +90,18 @@ static int check_model(const study *s, const document *d, message *why) {
   for (int key = 0; key < KEY_COUNT; key++) {
     const schema_entry *row = schema_row((study_key)key);
     const int node = check_node_of_key(s, (study_key)key);
-    if (node && !schema_concerns_model(row, model))
+    char models[64];
+    if (node && !schema_concerns_model(row, model)) {
+      schema_either(row->models, models, sizeof models);
       return document_refuse(d, node, why, "%s is a key of model.type: %s, and this is model.type: %s", row->path,
-                             row->models, model);
+                             models, model);
+    }
     const char *taken = node && row->word_models ? schema_word_models(row, s->values[key].text) : NULL;
-    if (taken && !schema_is_among(model, strlen(model), taken))
+    if (taken && !schema_is_among(model, strlen(model), taken)) {
+      schema_either(taken, models, sizeof models);
       return document_refuse(d, node, why, "%s = %s is for model.type: %s, and this is model.type: %s", row->path,
-                             s->values[key].text, taken, model);
+                             s->values[key].text, models, model);
+    }
   }
   return 0;
 }
@@ -112,6 +119,8 @@ static int check_start(const study *s, const document *d, message *why) {
 }
 
 static int check_lengths(const study *s, const document *d, message *why) {
+  if (study_is_map(s))
+    return 0;
   const double particles = s->values[KEY_MODEL_PARTICLES].numbers[0];
   for (int key = 0; key < KEY_COUNT; key++) {
     const typed_value *value = &s->values[key];
@@ -319,6 +328,8 @@ static int check_special_points(const study *s, const document *d, message *why)
 
 /* What an orbit needs, of a study that has one. */
 static int check_orbit(const study *s, const document *d, message *why) {
+  if (study_iterates(s) && !study_follows(s))
+    return 0;
   if (study_restarts(s))
     return branch_check_restart(s, d, why);
   if (study_follows(s)) {
@@ -343,5 +354,7 @@ int study_check(const study *s, const document *d, message *why) {
     code = check_start(s, d, why);
   if (!code)
     code = check_lengths(s, d, why);
-  return code ? code : check_orbit(s, d, why);
+  if (!code)
+    code = check_orbit(s, d, why);
+  return code || !study_iterates(s) ? code : iterate_check(s, d, why);
 }

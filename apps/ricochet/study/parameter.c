@@ -25,18 +25,21 @@ static long split_name(const char *text, char *path, size_t size) {
 }
 
 static int refuse_unknown(const lookup *l, const char *name, const char *path) {
-  char near[64], shown[80], section[16];
+  char near[64], shown[80];
   const parameter_use *u = l->use;
   source_quote(name, strlen(name), shown, sizeof shown);
-  snprintf(section, sizeof section, "%.*s", (int)strcspn(path, "."), path);
-  if (schema_is_later_section(section))
-    return document_refuse(l->d, u->node, l->why, "%s = %s is not in this version: the section '%s' is not", u->label,
-                           shown, section);
   schema_nearest_parameter(path, near, sizeof near);
   if (*near)
     return document_refuse(l->d, u->node, l->why, "unknown %s parameter '%s'; did you mean '%s'?", u->noun, shown,
                            near);
   return document_refuse(l->d, u->node, l->why, "unknown %s parameter '%s', expected %s", u->noun, shown, u->example);
+}
+
+static int refuse_model(const lookup *l, const char *path, const char *types) {
+  char models[64];
+  schema_either(types, models, sizeof models);
+  return document_refuse(l->d, l->use->node, l->why, "%s = %s is a key of model.type: %s, and this is model.type: %s",
+                         l->use->label, path, models, study_model(l->s));
 }
 
 /* A parameter must name one number: a scalar by its key, an element of a list by its index. */
@@ -74,8 +77,7 @@ int parameter_find(const study *s, const document *d, const parameter_use *use, 
   if (!row->sweep)
     return document_refuse(d, use->node, why, "%s = %s %s: %s", use->label, path, use->done, row->no_sweep);
   if (study_model(s) && !schema_concerns_model(row, study_model(s)))
-    return document_refuse(d, use->node, why, "%s = %s is a key of model.type: %s, and this is model.type: %s",
-                           use->label, path, row->models, study_model(s));
+    return refuse_model(&l, path, row->models);
   *parameter = (study_parameter){.key = key, .item = item};
   if (item >= 0)
     snprintf(parameter->name, sizeof parameter->name, "%s[%ld]", path, item);

@@ -52,6 +52,11 @@ bool branch_traces(const study *s);
 /** Checks the section `restart`, in place of these. */
 int branch_check_restart(const study *s, const document *d, message *why);
 
+/** Names what is observed, where a study that iterates leaves it to its model. */
+int iterate_read(study *s, message *why);
+/** Checks the keys of studies that iterate. */
+int iterate_check(const study *s, const document *d, message *why);
+
 /** Node that gives a key or sweeps it, 0 when it has its default. */
 int check_node_of_key(const study *s, study_key key);
 /** Node of a section, or of a sweep that stands for it; 0 when nothing of it is given. */

@@ -53,8 +53,11 @@ static void print_key(FILE *out, const schema_entry *row) {
     schema_either(row->kinds, kinds, sizeof kinds);
     fprintf(out, " For `kind: %s`.", kinds);
   }
-  if (row->models)
-    fprintf(out, " For `model.type: %s`.", row->models);
+  if (row->models) {
+    char models[64];
+    schema_either(row->models, models, sizeof models);
+    fprintf(out, " For `model.type: %s`.", models);
+  }
   print_word_models(out, row);
   if (row->orbits_default) {
     char methods[64];
@@ -141,5 +144,4 @@ void schema_reference(FILE *out) {
   for (int key = 0; key < KEY_COUNT; key++)
     if (schema_row((study_key)key)->later_words)
       print_later_words(out, schema_row((study_key)key));
-  fprintf(out, "- the section `iterate`\n");
 }

@@ -20,14 +20,6 @@ bool schema_is_section(const char *name) {
   return false;
 }
 
-bool schema_is_later_section(const char *name) {
-  static const char *const later[] = {"iterate"};
-  for (size_t i = 0; i < sizeof later / sizeof *later; i++)
-    if (strcmp(later[i], name) == 0)
-      return true;
-  return false;
-}
-
 long schema_find_word(const char *word, size_t length, const char *words) {
   for (long place = 0; words && *words; place++) {
     const size_t next = strcspn(words, "|");

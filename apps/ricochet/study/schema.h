@@ -30,6 +30,14 @@ typedef enum study_key {
   KEY_MODEL_FORCE,
   KEY_MODEL_FREQUENCY,
   KEY_MODEL_PHASE,
+  KEY_MODEL_D,
+  KEY_MODEL_LAMBDA,
+  KEY_MODEL_OMEGA,
+  KEY_MODEL_L,
+  KEY_MODEL_ETA,
+  KEY_MODEL_XI,
+  KEY_MODEL_KAPPA,
+  KEY_MODEL_STRETCH,
   KEY_ORBIT_PERIOD,
   KEY_ORBIT_AT_START,
   KEY_ORBIT_AT_HALF,
@@ -93,6 +101,23 @@ typedef enum study_key {
   KEY_GRAZING_SECTION,
   KEY_GRAZING_COEFFICIENTS,
   KEY_GRAZING_WINDOWS,
+  KEY_GRAZING_BEYOND,
+  KEY_ITERATE_TRANSIENT,
+  KEY_ITERATE_KEEP,
+  KEY_ITERATE_MEASURE,
+  KEY_ITERATE_START,
+  KEY_ITERATE_SECTION,
+  KEY_ITERATE_PHASE,
+  KEY_ITERATE_PARTICLE,
+  KEY_ITERATE_OBSERVE,
+  KEY_ITERATE_STATES,
+  KEY_ITERATE_LYAPUNOV,
+  KEY_ITERATE_EXPONENTS,
+  KEY_ITERATE_PERIOD_LIMIT,
+  KEY_ITERATE_PERIOD_TOL,
+  KEY_ITERATE_FOLLOW,
+  KEY_ITERATE_WINDOWS,
+  KEY_ITERATE_TOLERANCE,
   KEY_COUNT
 } study_key;
 
@@ -140,14 +165,15 @@ typedef enum sweep_key {
   SWEEP_TO,
   SWEEP_POINTS,
   SWEEP_SCALE,
+  SWEEP_BACK,
   SWEEP_KEY_COUNT
 } sweep_key;
 
 /** How a number meets the row of its key. */
 typedef enum schema_fit { FIT_OK, FIT_NOT_INTEGER, FIT_OUT_OF_RANGE } schema_fit;
 
-/** The row of a key; the table has KEY_COUNT rows. Those of the sections `branch`, `restart` and
- *  `grazing` stand in a file of their own. */
+/** The row of a key; the table has KEY_COUNT rows. They stand in several files,
+ *  by sections. */
 const schema_entry *schema_row(study_key key);
 /** The row of a key of a sweep entry, its path "sweep.from". */
 const schema_entry *schema_sweep_row(sweep_key key);
@@ -156,10 +182,8 @@ const schema_entry *schema_sweep_row(sweep_key key);
 study_key schema_find(const char *path);
 
 /** Whether keys of the table stand under this name: `model`, `orbit`, `start`, `time`, `branch`, `branch.trace`,
- *  `restart`, `grazing`. */
+ *  `restart`, `grazing`, `iterate`. */
 bool schema_is_section(const char *name);
-/** Whether a top-level name belongs to a later version: `iterate`. */
-bool schema_is_later_section(const char *name);
 
 /** Writes the known key nearest to `path` into `near`, or "" when none is near enough to suggest. Nearness is the edit
  *  distance, swapped neighbours counting once, of the whole paths or of their last names: `model.gama` finds

@@ -3,11 +3,11 @@
 #include "schema_rows.h"
 
 #define OF_BRANCH  .kinds = "branch"
-#define OF_FAMILY  .kinds = "branch|grazing" /* of all kinds that follow a family */
+#define OF_FAMILY  .kinds = "branch|grazing|diagram" /* of all kinds that follow a family */
 #define OF_GRAZING .kinds = "grazing"
 #define NUMBER     .type = VALUE_NUMBER, .scalar = true, .no_sweep = "it says how the branch is followed"
 
-static const schema_entry rows[KEY_COUNT - KEY_BRANCH_PARAMETER] = {
+static const schema_entry rows[KEY_ITERATE_TRANSIENT - KEY_BRANCH_PARAMETER] = {
     [KEY_BRANCH_PARAMETER - KEY_BRANCH_PARAMETER] =
         {.path = "branch.parameter",
          .type = VALUE_TEXT,
@@ -319,6 +319,20 @@ static const schema_entry rows[KEY_COUNT - KEY_BRANCH_PARAMETER] = {
          .doc =
              "Longest period of the one-impact orbits of the map beyond grazing whose windows are found, from period "
              "1 on; 0: none."},
+    [KEY_GRAZING_BEYOND - KEY_BRANCH_PARAMETER] =
+        {.path = "grazing.beyond",
+         .type = VALUE_NUMBER,
+         .scalar = true,
+         .null = true,
+         .fallback = "null",
+         ANY,
+         .kinds = "diagram",
+         .models = LATTICES,
+         .sweep = true,
+         .doc =
+             "How far beyond grazing the motion is iterated: `branch.parameter` is (1 + beyond) times its value where "
+             "the family of the section `branch` first grazes, and what the return map of that grazing says of the "
+             "attractor is stored beside it; null: the study says the parameter itself."},
 };
 
 const schema_entry *schema_branch_row(study_key key) {

@@ -2,19 +2,31 @@
 #include "schema_rows.h"
 
 /* A number of the springs that a model has one of per particle; of those that couple them in a chain. */
-#define SPRING .type = VALUE_NUMBER, .scalar = true, .list = true, .per_particle = true, .sweep = true
-#define LINK   .type = VALUE_NUMBER, .scalar = true, .models = "chain", .orbits_default = "impulse|dense", .sweep = true
+#define SPRING                                                                                                         \
+  .type = VALUE_NUMBER, .scalar = true, .list = true, .per_particle = true, .models = LATTICES, .sweep = true
+#define LINK .type = VALUE_NUMBER, .scalar = true, .models = "chain", .orbits_default = "impulse|dense", .sweep = true
+
+/* A number of a return map; a list of them. */
+#define MAP          .type = VALUE_NUMBER, .scalar = true, ANY, .models = "grazing_map"
+#define COEFFICIENTS .type = VALUE_NUMBER, .list = true, .fallback = "[]", ANY, .models = "grazing_map", .sweep = true
+
+/* Types of model of which there are studies of each kind. */
+static const char *const kind_models[] = {LATTICES, LATTICES, LATTICES, LATTICES, NULL, NULL};
 
 static const schema_entry rows[KEY_ORBIT_PERIOD] = {
-    [KEY_KIND] = {.path = "kind",
-                  WORD,
-                  .required = true,
-                  .words = "orbits|trajectory|branch|grazing",
-                  .later_words = "diagram|atlas|basin",
-                  .doc = "What to compute. `orbits`: the periodic orbit of one impact pattern at every grid point; "
-                         "`trajectory`: the motion from a state, or from such an orbit, at every grid point; `branch`: "
-                         "a family of periodic motions along a parameter, at every grid point of the others; "
-                         "`grazing`: where such a family first touches an obstacle, and what follows there."},
+    [KEY_KIND] =
+        {.path = "kind",
+         WORD,
+         .required = true,
+         .words = "orbits|trajectory|branch|grazing|diagram|basin",
+         .later_words = "atlas",
+         .word_models = kind_models,
+         .doc = "What to compute. `orbits`: the periodic orbit of one impact pattern at every grid point; "
+                "`trajectory`: the motion from a state, or from such an orbit, at every grid point; `branch`: "
+                "a family of periodic motions along a parameter, at every grid point of the others; "
+                "`grazing`: where such a family first touches an obstacle, and what follows there; `diagram`: the "
+                "attractor of a map, or of a motion on a section, at every grid point; `basin`: to which of "
+                "the attractors every start of a grid comes."},
     [KEY_TITLE] = {.path = "title",
                    .type = VALUE_TEXT,
                    .scalar = true,
@@ -24,12 +36,14 @@ static const schema_entry rows[KEY_ORBIT_PERIOD] = {
     [KEY_MODEL_TYPE] = {.path = "model.type",
                         WORD,
                         .required = true,
-                        .words = "chain|duffing_chain",
-                        .later_words = "oscillator|grazing_map",
+                        .words = "chain|duffing_chain|grazing_map",
+                        .later_words = "oscillator",
                         .doc = "`chain`: particles on springs of their own, of unit mass and stiffness by default, "
                                "coupled to their neighbours; `duffing_chain`: particles in series, joined by springs, "
-                               "the first one to the ground, without a spring behind the last."},
+                               "the first one to the ground, without a spring behind the last; `grazing_map`: "
+                               "the return map beside a grazing motion."},
     [KEY_MODEL_PARTICLES] = {.path = "model.particles",
+                             .models = LATTICES,
                              .type = VALUE_INTEGER,
                              .scalar = true,
                              .required = true,
@@ -54,6 +68,7 @@ static const schema_entry rows[KEY_ORBIT_PERIOD] = {
                          .sweep = true,
                          .doc = "Stiffness of the coupling springs."},
     [KEY_MODEL_FLOOR] = {.path = "model.floor",
+                         .models = LATTICES,
                          .type = VALUE_NUMBER,
                          .scalar = true,
                          .list = true,
@@ -68,6 +83,7 @@ static const schema_entry rows[KEY_ORBIT_PERIOD] = {
                                 "particle; null is no obstacle."},
     [KEY_MODEL_RESTITUTION] =
         {.path = "model.restitution",
+         .models = LATTICES,
          .type = VALUE_NUMBER,
          .scalar = true,
          .list = true,
@@ -79,6 +95,7 @@ static const schema_entry rows[KEY_ORBIT_PERIOD] = {
          .sweep = true,
          .doc = "Speed after an impact over speed before it: one number for all, or one per particle."},
     [KEY_MODEL_MASS] = {.path = "model.mass",
+                        .models = LATTICES,
                         .type = VALUE_NUMBER,
                         .scalar = true,
                         .fallback = "1",
@@ -133,6 +150,7 @@ static const schema_entry rows[KEY_ORBIT_PERIOD] = {
                                 .high = INFINITY,
                                 .doc = "Damping of the coupling springs: force per rate of extension."},
     [KEY_MODEL_WALL] = {.path = "model.wall",
+                        .models = LATTICES,
                         .type = VALUE_NUMBER,
                         .scalar = true,
                         .fallback = "null",
@@ -146,6 +164,7 @@ static const schema_entry rows[KEY_ORBIT_PERIOD] = {
                         .doc = "Displacement at which a particle hits an obstacle above it: one number for all, of a "
                                "Duffing chain for the last one, or one per particle; null is no obstacle."},
     [KEY_MODEL_HERTZ] = {.path = "model.hertz",
+                         .models = LATTICES,
                          .type = VALUE_NUMBER,
                          .scalar = true,
                          .fallback = "null",
@@ -159,6 +178,7 @@ static const schema_entry rows[KEY_ORBIT_PERIOD] = {
                                 "null: rigid obstacles."},
     [KEY_MODEL_FORCE] =
         {.path = "model.force",
+         .models = LATTICES,
          .type = VALUE_NUMBER,
          .scalar = true,
          .fallback = "0",
@@ -169,6 +189,7 @@ static const schema_entry rows[KEY_ORBIT_PERIOD] = {
          .sweep = true,
          .doc = "Amplitude of the force amplitude cos(frequency t + phase): one number for all, or one per particle."},
     [KEY_MODEL_FREQUENCY] = {.path = "model.frequency",
+                             .models = LATTICES,
                              .type = VALUE_NUMBER,
                              .scalar = true,
                              .fallback = "1",
@@ -178,6 +199,7 @@ static const schema_entry rows[KEY_ORBIT_PERIOD] = {
                              .sweep = true,
                              .doc = "Angular frequency of the force."},
     [KEY_MODEL_PHASE] = {.path = "model.phase",
+                         .models = LATTICES,
                          .type = VALUE_NUMBER,
                          .scalar = true,
                          .fallback = "0",
@@ -185,6 +207,47 @@ static const schema_entry rows[KEY_ORBIT_PERIOD] = {
                          .orbits_default = "impulse|dense",
                          .sweep = true,
                          .doc = "Phase of the force."},
+    [KEY_MODEL_D] = {.path = "model.d",
+                     MAP,
+                     .required = true,
+                     .sweep = true,
+                     .doc = "How far the periodic motion would pass the obstacle if it were not there; before grazing "
+                            "d <= 0."},
+    [KEY_MODEL_LAMBDA] = {.path = "model.lambda",
+                          MAP,
+                          .fallback = "null",
+                          .null = true,
+                          .sweep = true,
+                          .doc =
+                              "Of the example (6.1)-(6.5) of [FN97]: the real eigenvalue of L; null: the map is that "
+                              "of `model.L`."},
+    [KEY_MODEL_OMEGA] = {.path = "model.omega",
+                         MAP,
+                         .fallback = "null",
+                         .null = true,
+                         .sweep = true,
+                         .doc = "Of the same example: the modulus of the two imaginary eigenvalues."},
+    [KEY_MODEL_L] = {.path = "model.L",
+                     COEFFICIENTS,
+                     .doc = "Instead of `lambda` and `omega`: the derivative of the return map without an impact, "
+                            "row by row, as many rows and columns as `model.eta` has elements."},
+    [KEY_MODEL_ETA] = {.path = "model.eta", COEFFICIENTS, .doc = "An impact happens where eta z <= d."},
+    [KEY_MODEL_XI] = {.path = "model.xi", COEFFICIENTS, .doc = "Direction of the square root."},
+    [KEY_MODEL_KAPPA] = {.path = "model.kappa",
+                         COEFFICIENTS,
+                         .doc = "What an impact adds in proportion to d - eta z; empty: nothing."},
+    [KEY_MODEL_STRETCH] = {.path = "model.stretch",
+                           .type = VALUE_NUMBER,
+                           .scalar = true,
+                           .fallback = "1",
+                           .low = 0,
+                           .low_open = true,
+                           .high = INFINITY,
+                           .models = "grazing_map",
+                           .sweep = true,
+                           .doc =
+                               "s, the square root of twice the gap's acceleration: an impact adds s sqrt(d - eta z) "
+                               "xi."},
 };
 
 const schema_entry *schema_model_row(study_key key) {

@@ -41,7 +41,7 @@ static const schema_entry rows[KEY_BRANCH_PARAMETER - KEY_ORBIT_PERIOD] = {
     [KEY_ORBIT_MOTION - KEY_ORBIT_PERIOD] =
         {.path = "orbit.motion",
          WORD,
-         .kinds = "branch|grazing",
+         .kinds = "branch|grazing|diagram",
          .fallback = "even",
          .words = "even|forced|conservative|autonomous",
          .doc = "`even`: about t = 0 and T/2, of models without damping; `forced`: with the period of the force or a "
@@ -54,7 +54,7 @@ static const schema_entry rows[KEY_BRANCH_PARAMETER - KEY_ORBIT_PERIOD] = {
                              .null = true,
                              .fallback = "null",
                              ANY,
-                             .kinds = "branch|grazing",
+                             .kinds = "branch|grazing|diagram",
                              .sweep = true,
                              .doc =
                                  "Energy of an even or conservative motion, instead of its period; null: the period is "
@@ -67,7 +67,7 @@ static const schema_entry rows[KEY_BRANCH_PARAMETER - KEY_ORBIT_PERIOD] = {
                              .fallback = "null",
                              .low = 1,
                              .high = 1e6,
-                             .kinds = "branch|grazing",
+                             .kinds = "branch|grazing|diagram",
                              .sweep = true,
                              .doc = "The period is this many of the model's force, instead of `orbit.period`; "
                                     "null: 1 for forced motions without `orbit.period`."},
@@ -78,7 +78,7 @@ static const schema_entry rows[KEY_BRANCH_PARAMETER - KEY_ORBIT_PERIOD] = {
                              .fallback = "[]",
                              .low = 0,
                              .high = INFINITY,
-                             .kinds = "branch|grazing",
+                             .kinds = "branch|grazing|diagram",
                              .sweep = true,
                              .doc =
                                  "Particles in the order in which they hit their floor, or their wall where they have "
@@ -88,7 +88,7 @@ static const schema_entry rows[KEY_BRANCH_PARAMETER - KEY_ORBIT_PERIOD] = {
                                             .list = true,
                                             .fallback = "[]",
                                             ANY,
-                                            .kinds = "branch|grazing",
+                                            .kinds = "branch|grazing|diagram",
                                             .sweep = true,
                                             .doc = "First guess of the times of these impacts, rising."},
     [KEY_ORBIT_EXCITED -
@@ -98,7 +98,7 @@ static const schema_entry rows[KEY_BRANCH_PARAMETER - KEY_ORBIT_PERIOD] = {
                              .fallback = "[]",
                              .low = 0,
                              .high = INFINITY,
-                             .kinds = "branch|grazing",
+                             .kinds = "branch|grazing|diagram",
                              .sweep = true,
                              .doc = "Particles that swing in the first guess of a motion without impacts: at t = 0 at "
                                     "the amplitude at which one alone, with its cubic spring, has the period T; the "
@@ -111,7 +111,7 @@ static const schema_entry rows[KEY_BRANCH_PARAMETER - KEY_ORBIT_PERIOD] = {
          .fallback = "null",
          .low = 0,
          .high = INFINITY,
-         .kinds = "branch|grazing",
+         .kinds = "branch|grazing|diagram",
          .sweep = true,
          .doc = "First guess of a motion whose energy is given: the normal mode of this place, from 0 in "
                 "the order of frequencies, of the linear part of the model, at rest at t = 0, with its "
@@ -215,7 +215,8 @@ static const schema_entry rows[KEY_BRANCH_PARAMETER - KEY_ORBIT_PERIOD] = {
                              .per_particle = true,
                              .fallback = "0",
                              ANY,
-                             .kinds = "trajectory|branch|grazing",
+                             .kinds = "trajectory|branch|grazing|diagram|basin",
+                             .models = LATTICES,
                              .sweep = true,
                              .doc = "Displacements at t = 0, in a branch of the first guess, after the first impact of "
                                     "`orbit.sequence`: one number for all, or one per particle."},
@@ -227,7 +228,8 @@ static const schema_entry rows[KEY_BRANCH_PARAMETER - KEY_ORBIT_PERIOD] = {
                              .per_particle = true,
                              .fallback = "0",
                              ANY,
-                             .kinds = "trajectory|branch|grazing",
+                             .kinds = "trajectory|branch|grazing|diagram|basin",
+                             .models = LATTICES,
                              .sweep = true,
                              .doc = "Velocities at t = 0, in a branch of the first guess, after the first impact of "
                                     "`orbit.sequence`: one number for all, or one per particle."},
@@ -307,5 +309,7 @@ static const schema_entry rows[KEY_BRANCH_PARAMETER - KEY_ORBIT_PERIOD] = {
 const schema_entry *schema_row(study_key key) {
   if (key < KEY_ORBIT_PERIOD)
     return schema_model_row(key);
-  return key < KEY_BRANCH_PARAMETER ? &rows[key - KEY_ORBIT_PERIOD] : schema_branch_row(key);
+  if (key < KEY_BRANCH_PARAMETER)
+    return &rows[key - KEY_ORBIT_PERIOD];
+  return key < KEY_ITERATE_TRANSIENT ? schema_branch_row(key) : schema_iterate_row(key);
 }

@@ -35,6 +35,12 @@ static const schema_entry sweep_rows[SWEEP_KEY_COUNT] = {
                      .fallback = "linear",
                      .words = "linear|log",
                      .doc = "`linear`: equal steps; `log`: equal ratios, `from` above 0."},
+    [SWEEP_BACK] = {.path = "sweep.back",
+                    .type = VALUE_FLAG,
+                    .scalar = true,
+                    .fallback = "false",
+                    .doc = "The values once more in the reverse order, after the others: with `iterate.follow`, there "
+                           "and back."},
 };
 
 const schema_entry *schema_sweep_row(sweep_key key) {

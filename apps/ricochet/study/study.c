@@ -56,11 +56,6 @@ static int read_top(study *s, const document *d, const yaml_node_pair_t *pair, m
   const char *name = key_text(d, pair->key);
   if (schema_is_section(name))
     return read_section(s, d, name, pair->value, why);
-  if (schema_is_later_section(name))
-    return document_refuse(d, pair->key, why,
-                           "the section '%s' is not in this version, expected model, orbit, start, time, branch, "
-                           "restart, grazing and sweep",
-                           name);
   const study_key key = schema_find(name);
   if (key != KEY_COUNT)
     return read_key(s, d, pair->key, pair->value, key, why);
@@ -116,6 +111,8 @@ static int read_tree(study *s, const document *d, message *why) {
     code = sweep_read(s, d, document_find(d, DOCUMENT_ROOT, "sweep"), why);
   if (!code)
     code = branch_read(s, d, why);
+  if (!code)
+    code = iterate_read(s, why);
   return code ? code : study_check(s, d, why);
 }
 
@@ -218,7 +215,7 @@ uint64_t study_digest(const study *s) {
   return s->digest;
 }
 bool study_follows(const study *s) {
-  return study_is_kind(s, "branch") || study_is_kind(s, "grazing");
+  return study_is_kind(s, "branch") || study_is_kind(s, "grazing") || study_is_beyond(s);
 }
 
 bool study_restarts(const study *s) {

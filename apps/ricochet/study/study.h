@@ -91,8 +91,22 @@ const study_sweep *study_sweep_at(const study *s, size_t index);
 /** Number of grid points, the product over the sweeps; 1 without a sweep. Less than 2^40. */
 uint64_t study_tasks(const study *s);
 
-/** Whether the study follows a family of motions along a parameter: kinds `branch` and `grazing`. */
+/** Whether the study follows a family of motions along a parameter: kinds `branch` and `grazing`, and diagrams beyond
+ *  grazing. */
 bool study_follows(const study *s);
+
+/** Whether the study iterates a map or a section: kinds `diagram` and `basin`. */
+bool study_iterates(const study *s);
+/** Whether its model is a map. */
+bool study_is_map(const study *s);
+/** Numbers of a state that such a study iterates: of the map, or of the section. */
+size_t study_state_size(const study *s);
+/** Which of them is observed. */
+size_t study_observed(const study *s);
+/** Whether it is a diagram that looks for grazing first, and says how far beyond it stands. */
+bool study_is_beyond(const study *s);
+/** Whether windows along its last sweep are to be listed. */
+bool study_windows(const study *s);
 
 /** What it is followed along; of studies that do. */
 const study_parameter *study_followed(const study *s);
@@ -117,6 +131,8 @@ void study_values_destroy(study_values **v);
 /** Moves to a task, below study_tasks. Only swept values are rewritten, nothing is allocated. */
 void study_values_at(study_values *v, uint64_t task);
 
+/** Gives the parameter of sweep `index` another value, until study_values_at. */
+void study_values_sweep(study_values *v, size_t index, double value);
 /** Moves the parameter that a branch is followed along, which starts at `branch.from`. */
 void study_values_follow(study_values *v, double value);
 /** Sets where the branch of this task starts, `branch.from` and the parameter, where the study leaves it to the first

@@ -104,7 +104,7 @@ static int read_parameter(const reading *r) {
 
 static int read_list(const reading *r) {
   for (sweep_key key = SWEEP_FROM; key < SWEEP_KEY_COUNT; key++)
-    if (given(r, key))
+    if (given(r, key) && key != SWEEP_BACK)
       return document_refuse(r->d, r->keys[key], r->why,
                              "%s has both values and %s, expected either values, or from, to and points", r->label,
                              short_name(key));
@@ -202,6 +202,23 @@ static int read_range(const reading *r) {
   return 0;
 }
 
+/* The values once more in the reverse order, where that is wanted. */
+static int go_back(const reading *r) {
+  study_sweep *view = &r->e->view;
+  double wanted = 0;
+  const int code = read_number(r, SWEEP_BACK, &wanted);
+  if (code || wanted == 0)
+    return code;
+  double *both = realloc(r->e->values, 2 * view->points * sizeof *both);
+  if (!both)
+    return no_memory(r);
+  for (size_t i = 0; i < view->points; i++)
+    both[2 * view->points - 1 - i] = both[i];
+  view->values = r->e->values = both;
+  view->points *= 2;
+  return 0;
+}
+
 static int read_entry(reading *r) {
   int code = find_keys(r);
   if (!code)
@@ -211,6 +228,9 @@ static int read_entry(reading *r) {
   if (code)
     return code;
   r->e->view.values = r->e->values;
+  code = given(r, SWEEP_BACK) ? go_back(r) : 0;
+  if (code)
+    return code;
   char label[128];
   snprintf(label, sizeof label, "swept %s", r->e->view.name);
   for (size_t i = 0; i < r->e->view.points && !code; i++)
@@ -267,7 +287,10 @@ const sweep_entry *sweep_over(const study *s, study_key key, long item) {
 }
 
 int sweep_value_node(const document *d, const sweep_entry *e, size_t i) {
-  if (e->nodes[SWEEP_VALUES])
-    return document_node(d, e->nodes[SWEEP_VALUES])->data.sequence.items.start[i];
+  if (e->nodes[SWEEP_VALUES]) {
+    const yaml_node_t *list = document_node(d, e->nodes[SWEEP_VALUES]);
+    const size_t count = (size_t)(list->data.sequence.items.top - list->data.sequence.items.start);
+    return list->data.sequence.items.start[i < count ? i : 2 * count - 1 - i]; /* beyond: on the way back */
+  }
   return i == 0 ? e->nodes[SWEEP_FROM] : i == e->view.points - 1 ? e->nodes[SWEEP_TO] : e->nodes[SWEEP_POINTS];
 }

@@ -68,14 +68,17 @@ void study_values_destroy(study_values **v) {
 }
 
 void study_values_at(study_values *v, uint64_t task) {
-  for (size_t i = 0; i < v->s->sweep_count; i++) {
-    const study_sweep *sweep = &v->s->sweeps[i].view;
-    v->copies[sweep->key][place_of(sweep->item)] = study_sweep_value(v->s, i, task);
-  }
+  for (size_t i = 0; i < v->s->sweep_count; i++)
+    study_values_sweep(v, i, study_sweep_value(v->s, i, task));
   if (follows(v->s))
     study_values_begin(v, v->s->values[KEY_BRANCH_FROM].numbers[0]);
   if (traces(v->s))
     study_values_trace(v, v->s->values[v->s->traced.key].numbers[place_of(v->s->traced.item)]);
+}
+
+void study_values_sweep(study_values *v, size_t index, double value) {
+  const study_sweep *sweep = &v->s->sweeps[index].view;
+  v->copies[sweep->key][place_of(sweep->item)] = value;
 }
 
 void study_values_follow(study_values *v, double value) {

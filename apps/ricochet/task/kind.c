@@ -3,8 +3,8 @@
 #include <string.h>
 
 const kind *kind_of(const study *s) {
-  static const kind *const kinds[] = {&kind_orbits, &kind_orbits_shooting, &kind_trajectory, &kind_branch,
-                                      &kind_grazing};
+  static const kind *const kinds[] = {&kind_orbits,  &kind_orbits_shooting, &kind_trajectory, &kind_branch,
+                                      &kind_grazing, &kind_diagram,         &kind_basin};
   for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++)
     if (strcmp(kinds[i]->name, study_kind(s)) == 0 &&
         (!kinds[i]->methods || schema_is_among(study_method(s), strlen(study_method(s)), kinds[i]->methods)))
@@ -25,7 +25,7 @@ int kind_no_extra(const study *s, const kind_plan *plan, const row_source *done,
   (void)plan;
   (void)done;
   (void)poll;
+  (void)extra;
   (void)why;
-  *extra = (extra_rows){0};
   return 0;
 }

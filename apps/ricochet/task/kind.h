@@ -13,7 +13,7 @@
 #include "records.h"
 #include "table.h"
 
-enum { KIND_MOST_TAILS = 6 };
+enum { KIND_MOST_TAILS = 6, KIND_MOST_EXTRAS = 2 };
 
 /** A table of records, of which each task has as many as it has: task i owns the records offset[i] to offset[i + 1]. */
 typedef struct tail {
@@ -67,9 +67,9 @@ typedef struct kind {
    *  @returns 0, or -1 when the poll stopped it; rows and records that it has made by then are no one's */
   int (*evaluate)(worker *w, const kind_plan *plan, task_range tasks, unsigned char *rows, records *tails);
   void (*close)(worker **w);
-  /** The study's extra table, made after all tasks, on every rank alike; a count of 0 and no columns when there is
-   * none.
+  /** The study's extra tables, made after all tasks, on every rank alike.
    *  @param done  rows of all tasks
+   *  @param extra  [KIND_MOST_EXTRAS] empty; tables without columns are none
    *  @returns 0, EXIT_RUN, EXIT_FILES; EXIT_STOPPED when the poll stopped it */
   int (*extra)(const study *s, const kind_plan *plan, const row_source *done, ric_poll poll, extra_rows *extra,
                message *why);
@@ -91,5 +91,7 @@ extern const kind kind_orbits_shooting;
 extern const kind kind_trajectory;
 extern const kind kind_branch;
 extern const kind kind_grazing;
+extern const kind kind_diagram;
+extern const kind kind_basin;
 
 #endif

@@ -345,7 +345,6 @@ int orbits_special(const study *s, const kind_plan *plan, const row_source *done
   (void)plan;
   (void)done;
   study_values *v = study_values_create(s);
-  *extra = (extra_rows){0};
   if (!v)
     return refuse(why, EXIT_RUN, "%s: no memory for the values of a task", study_name(s));
   int code = value_flag(v, KEY_ORBIT_SPECIAL_POINTS) ? list_points(s, v, poll, extra, why) : 0;

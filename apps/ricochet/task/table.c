@@ -58,6 +58,14 @@ void table_add(table *t, const column *columns, size_t count, const table_axis *
   }
 }
 
+void table_drop(table *t, const char *name) {
+  size_t kept = 0;
+  for (size_t i = 0; i < t->column_count; i++)
+    if (strcmp(t->columns[i].name, name) != 0)
+      t->columns[kept++] = t->columns[i];
+  t->column_count = kept;
+}
+
 size_t table_lay_out(table *t) {
   size_t at = 0;
   for (size_t i = 0; i < t->column_count; i++) {

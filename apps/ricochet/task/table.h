@@ -73,6 +73,9 @@ size_t column_bytes(const column *c);
  *  @param axes  [axis_count] */
 void table_add(table *t, const column *columns, size_t count, const table_axis *axes, size_t axis_count);
 
+/** Takes a column out, if there is one of this name. Before the layout. */
+void table_drop(table *t, const char *name);
+
 /** Sets the offsets and row_bytes; returns row_bytes. */
 size_t table_lay_out(table *t);
 

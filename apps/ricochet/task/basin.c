@@ -1,0 +1,136 @@
+/* The attractors of a basin: tasks that come to the same one are found when all are done. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "diagram.h"
+
+/* Cycles of one period whose states with the smallest observed number differ by less, relative to the largest number in
+ * them, are one attractor: far more than what is left of a transient, far less than what parts two of them. */
+static const double same = 1e-4;
+
+enum { MOST_ATTRACTORS = 10000 };
+
+#define INTEGER .type = COLUMN_I64, .units = "1"
+#define SOURCE  .source = "[FN97] section 6"
+
+static const column task_columns[] = {
+    {.name = "attractor", INTEGER, .long_name = "which attractor the start comes to; -1: none", SOURCE},
+};
+
+static const column attractor_columns[] = {
+    {.name = "found_period", INTEGER, .long_name = "period of the attractor; 0: all without one", SOURCE},
+    {.name = "found_tasks", INTEGER, .long_name = "number of starts that come to it", SOURCE},
+    {.name = "found_first", INTEGER, .long_name = "first task that does", SOURCE},
+    {.name = "found_lowest",
+     .type = COLUMN_F64,
+     .units = "1",
+     .axes = {"coordinate"},
+     .long_name = "state of it with the smallest observed number; of the first task",
+     SOURCE},
+};
+
+typedef struct sorting {
+  const kind_plan *plan;
+  size_t size;
+  table tasks, attractors;
+  unsigned char *labels; /* [tasks] rows */
+  records found;
+  unsigned char *row; /* of a task */
+} sorting;
+
+static bool is_near(const double *a, const double *b, size_t size) {
+  double apart = 0, largest = 0;
+  for (size_t i = 0; i < size; i++) {
+    apart = fmax(apart, fabs(a[i] - b[i]));
+    largest = fmax(largest, fmax(fabs(a[i]), fabs(b[i])));
+  }
+  return apart <= same * largest;
+}
+
+static int64_t integer_of(const unsigned char *row, const column *c) {
+  int64_t value;
+  memcpy(&value, row + c->offset, sizeof value);
+  return value;
+}
+
+/* Index of the attractor of a task, the number of those found where it is a new one. */
+static uint64_t find(const sorting *k, int64_t period, const double *lowest) {
+  const column *known = table_column(&k->attractors, "found_period");
+  uint64_t i = 0;
+  for (; i < k->found.count; i++) {
+    unsigned char *row = k->found.bytes + i * k->attractors.row_bytes;
+    if (integer_of(row, known) == period &&
+        (period == 0 || is_near(lowest, row_numbers(row, table_column(&k->attractors, "found_lowest")), k->size)))
+      break;
+  }
+  return i;
+}
+
+/* @returns 0, or -1 without memory or with too many attractors */
+static int sort_task(sorting *k, uint64_t task) {
+  const table *rows = &k->plan->rows, *t = &k->attractors;
+  unsigned char *label = k->labels + task * k->tasks.row_bytes;
+  const int outcome = k->row[table_column(rows, "outcome")->offset];
+  if (outcome != RIC_ATTRACTOR_PERIODIC && outcome != RIC_ATTRACTOR_APERIODIC) {
+    row_put_integer(label, table_column(&k->tasks, "attractor"), -1);
+    return 0;
+  }
+  const int64_t period = integer_of(k->row, table_column(rows, "attractor_period"));
+  const double *lowest = row_numbers(k->row, table_column(rows, "lowest"));
+  const uint64_t i = find(k, period, lowest);
+  if (i == k->found.count) {
+    unsigned char *added = i < MOST_ATTRACTORS ? records_add(&k->found) : NULL;
+    if (!added)
+      return -1;
+    row_put_integer(added, table_column(t, "found_period"), period);
+    row_put_integer(added, table_column(t, "found_first"), (long long)task);
+    row_put_numbers(added, table_column(t, "found_lowest"), lowest);
+  }
+  unsigned char *of = k->found.bytes + i * t->row_bytes;
+  row_put_integer(of, table_column(t, "found_tasks"), integer_of(of, table_column(t, "found_tasks")) + 1);
+  row_put_integer(label, table_column(&k->tasks, "attractor"), (long long)i);
+  return 0;
+}
+
+static void lay_out(sorting *k, const study *s) {
+  const table_axis axes[] = {{"coordinate", k->size}};
+  k->tasks = (table){.group = "basin", .row_axis = "task"};
+  table_add(&k->tasks, task_columns, sizeof task_columns / sizeof *task_columns, axes, 1);
+  table_lay_out(&k->tasks);
+  k->attractors = (table){.group = "basin", .row_axis = "attractor_row"};
+  table_add(&k->attractors, attractor_columns, sizeof attractor_columns / sizeof *attractor_columns, axes, 1);
+  table_lay_out(&k->attractors);
+  k->found.record_bytes = k->attractors.row_bytes;
+  k->labels = calloc(study_tasks(s), k->tasks.row_bytes);
+  k->row = calloc(1, k->plan->rows.row_bytes);
+}
+
+static int sort_all(sorting *k, const study *s, const row_source *done, ric_poll poll, message *why) {
+  int code = k->labels && k->row ? 0 : refuse(why, EXIT_RUN, "%s: no memory for the attractors", study_name(s));
+  for (uint64_t task = 0; task < study_tasks(s) && !code; task++) {
+    if (ric_poll_stops(poll))
+      return refuse(why, EXIT_STOPPED, "%s: stopped at its attractors", study_name(s));
+    code = done->read(done->user, task, 1, k->row, why);
+    if (!code && sort_task(k, task) != 0)
+      code =
+          refuse(why, EXIT_RUN, "%s: more than %d attractors, or no memory for them", study_name(s), MOST_ATTRACTORS);
+  }
+  return code;
+}
+
+int basin_attractors(const study *s, const kind_plan *plan, const row_source *done, ric_poll poll, extra_rows *extra,
+                     message *why) {
+  sorting k = {.plan = plan, .size = study_state_size(s)};
+  lay_out(&k, s);
+  const int code = sort_all(&k, s, done, poll, why);
+  free(k.row);
+  if (!code) {
+    extra[0] = (extra_rows){.layout = k.tasks, .count = study_tasks(s), .rows = k.labels};
+    extra[1] = (extra_rows){.layout = k.attractors, .count = k.found.count, .rows = k.found.bytes};
+    return 0;
+  }
+  free(k.labels);
+  records_clear(&k.found);
+  return code;
+}

@@ -1,0 +1,63 @@
+/* What studies of kinds `diagram` and `basin` iterate: a map, or the crossings of a motion with a section.
+ *
+ * Maps go to their attractors several at once, side by side in vector lanes; motions one by one. What comes out does
+ * not depend on how tasks are put together. */
+#ifndef RICOCHET_APP_ITERATED_H
+#define RICOCHET_APP_ITERATED_H
+
+#include "beyond.h"
+
+/** A task that waits to be run, of a map. */
+typedef struct iterated_map {
+  ric_grazing_map map;
+  double d;
+  ric_attractor_options options;
+  ric_error refused; /* why it cannot be run; its status is RIC_OK where it can */
+} iterated_map;
+
+typedef struct iterated {
+  const study *study;
+  study_values *values; /* whose present task is taken; moved by the owner */
+  ric_poll poll;
+  size_t size;  /* numbers of a state */
+  size_t slots; /* most tasks that run at once */
+  /* of maps */
+  iterated_map *maps;         /* [slots] */
+  ric_map_lanes lanes;        /* the fastest variant here */
+  ric_map_runner *runner;     /* of the options below; NULL before the first run */
+  ric_attractor_options made; /* of the runner */
+  /* of motions */
+  lattice_model model;
+  ric_motion_section_options section;
+  ric_attractor_options options;
+  ric_error refused; /* why the task cannot be run; its status is RIC_OK where it can */
+  beyond *beyond;    /* of studies that stand beyond a grazing point, else NULL */
+} iterated;
+
+/** Most tasks that run at once. */
+size_t iterated_slots(const study *s);
+
+/** Bytes that it takes. */
+double iterated_bytes(const study *s);
+
+/** @param it  iterated_clear also after a refusal  @returns 0, or EXIT_RUN without memory */
+int iterated_init(iterated *it, const study *s, ric_poll poll, message *why);
+void iterated_clear(iterated *it);
+
+/** Takes the present task as the one of a slot, with its start.
+ *  @param z  [size] set */
+void iterated_take(iterated *it, size_t slot, double *z);
+
+/** Reads the lattice of the present values: beyond grazing, at the parameter where they stand.
+ *  @returns as beyond_find */
+ric_status iterated_read_model(iterated *it, ric_error *error);
+
+/** Period of the force of a lattice; 0 where it has none. */
+double iterated_period(const lattice_model *model);
+
+/** Runs the first `count` slots to their attractors, whose arrays and starts the caller has set. What cannot be run has
+ *  failed, with the reason.
+ *  @returns RIC_OK, RIC_ESTOPPED */
+ric_status iterated_run(iterated *it, size_t count, ric_attractor *attractors);
+
+#endif
