@@ -63,8 +63,19 @@ PARAMETER_LABEL = {
     "model.hertz": r"stiffness $k$ of the Hertz contacts",
     "model.frequency": r"frequency $\omega$ of the force",
     "model.force": "amplitude of the force",
+    "model.lambda": r"multiplier $\lambda$ of the map",
+    "model.omega": r"multiplier $\omega$ of the map",
+    "model.d": "$d$, by which the motion would pass the obstacle",
+    "grazing.beyond": "$\\mu$ = parameter / its value at grazing \u2212 1",
 }
-PARAMETER_SYMBOL = {"model.gamma": r"\gamma", "orbit.period": "T"}
+PARAMETER_SYMBOL = {
+    "model.gamma": r"\gamma",
+    "orbit.period": "T",
+    "model.lambda": r"\lambda",
+    "model.omega": r"\omega",
+    "model.d": "d",
+    "grazing.beyond": r"\mu",
+}
 
 
 class FigureError(Exception):
@@ -101,6 +112,7 @@ class Study:
             [int(item) for item in self.items(key) if item.isdigit()] for key in ("at_start", "at_half")
         )
         self.in_series = self.word("type") == "duffing_chain"
+        self.is_map = self.word("type") == "grazing_map"
         self.floors = self.items("floor") or [self.word("floor") or self.no_place("floor")]
 
     def word(self, key):
@@ -138,6 +150,8 @@ class Study:
         """The kind of chain and its number of particles in words."""
         if self.in_series:
             return self.series(particles)
+        if self.is_map:
+            return "map (5.11) of [FN97]" if self.items("eta") else "map (6.1)\u2013(6.5) of [FN97]"
         ends = {
             "periodic": "ring of {} particles",
             "fixed": "{} particles, fixed ends",
@@ -151,7 +165,8 @@ class Study:
         found = re.fullmatch(r"([-+.\deE]*)\s*(pi)?", self.word(key) or "")
         if not found or not found[0]:
             return None
-        return found[1] + (r"\,\pi" if found[2] else "")
+        number = re.sub(r"e[+]?(-?)0*(\d+)$", r"\\times10^{\1\2}", found[1])
+        return number + (r"\,\pi" if found[2] else "")
 
 
 CRITICAL_LABELS = {"plus_one": "pair at +1", "minus_one": "pair at \u22121", "collision": "collision"}
@@ -289,6 +304,8 @@ def parameter_label(name):
     if name in PARAMETER_LABEL:
         return PARAMETER_LABEL[name]
     path, _, item = name.partition("[")
+    if path == "iterate.start" and item:
+        return f"start $z_{{{int(item.rstrip(']')) + 1}}}$"
     word = path.split(".")[-1].replace("_", " ")
     return f"{word} of particle {item.rstrip(']')}" if item else word
 

@@ -62,35 +62,32 @@ static bool returns(const row *r, size_t period) {
   return true;
 }
 
-/* The largest difference of a number `lag` iterates later, in one of three parts of the row, whole lags apart. */
-static double lag_of(const row *r, size_t i, size_t lag, size_t part) {
-  const size_t pairs = r->count - lag, shift = pairs / (3 * lag) * lag;
+/* The largest difference of a number `lag` iterates later, from iterate `from` on. */
+static double lag_of(const row *r, size_t i, size_t lag, size_t from, size_t count) {
   double most = 0;
-  for (size_t k = part * shift; k < pairs - (2 - part) * shift; k++)
+  for (size_t k = from; k < from + count; k++)
     most = larger(most, fabs(r->states[k * r->stride + i] - r->states[(k + lag) * r->stride + i]));
   return most;
 }
 
-/* Whether what one number is off after `lag` tends to zero: by Aitken's extrapolation of the three parts. */
-static bool tends_to_zero(const row *r, size_t i, size_t lag) {
-  const double a = lag_of(r, i, lag, 0), b = lag_of(r, i, lag, 1), c = lag_of(r, i, lag, 2);
-  const double first = a - b, second = b - c;
-  if (c <= near_of(r, i))
+/* Whether a number comes to a cycle of half the period: beside a flip it does so from both sides in turn, and slowly,
+ * and is back on the same side long before it is there. What is left of its difference after half the period is
+ * extrapolated, as it shrinks by the same factor as that after the whole one; at the flip itself, where it falls as the
+ * root of time, a third of it would go. */
+static bool comes_to_half(const row *r, size_t i, size_t period) {
+  const size_t shift = (r->count - period) / period * (period / 2), count = r->count - period - shift;
+  const double whole = lag_of(r, i, period, 0, count), shrunk = whole - lag_of(r, i, period, shift, count);
+  const double half = lag_of(r, i, period / 2, 0, count), fallen = half - lag_of(r, i, period / 2, shift, count);
+  if (half <= near_of(r, i))
     return true;
-  return first > second && second > r->floor && fabs(c - second * second / (first - second)) <= 0.1 * c;
+  return whole > r->floor && shrunk > 0 && fallen * whole > half / 4 * shrunk;
 }
 
-/* A motion that comes to its cycle slowly, from alternating sides, has returned after two of its periods before it has
- * after one: the least part of a period towards which it tends. */
-static size_t settle(const row *r, size_t period) {
-  for (size_t lag = 1; lag < period; lag++) {
-    bool tends = period % lag == 0;
-    for (size_t i = 0; i < r->size && tends; i++)
-      tends = tends_to_zero(r, i, lag);
-    if (tends)
-      return lag;
-  }
-  return period;
+static bool halves(const row *r, size_t period) {
+  bool half = period % 2 == 0;
+  for (size_t i = 0; i < r->size && half; i++)
+    half = comes_to_half(r, i, period);
+  return half;
 }
 
 size_t period_find(const double *states, size_t size, size_t stride, size_t limit, double tolerance, double noise) {
@@ -104,7 +101,7 @@ size_t period_find(const double *states, size_t size, size_t stride, size_t limi
   for (size_t p = 1; p <= limit; p++)
     if (near_again(states, stride, 2 * limit + 1 - p, p, near) && /* at once where there is none */
         returns(&r, p))
-      return settle(&r, p);
+      return halves(&r, p) ? p / 2 : p;
   return 0;
 }
 

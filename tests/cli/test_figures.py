@@ -236,8 +236,8 @@ REFUSALS = [
 ]
 
 
-def run_studies(binary, folder):
-    for name, text in STUDIES.items():
+def run_studies(binary, folder, studies):
+    for name, text in studies.items():
         study = os.path.join(folder, name + ".yaml")
         with open(study, "w", encoding="utf-8") as file:
             file.write(text)
@@ -376,7 +376,7 @@ def main():
         return 2
     binary, scripts = os.path.abspath(sys.argv[1]), os.path.abspath(os.path.join(sys.argv[2], "scripts"))
     with tempfile.TemporaryDirectory() as folder:
-        run_studies(binary, folder)
+        run_studies(binary, folder, STUDIES)
         make_files(folder)
         with ThreadPoolExecutor(2) as pool:
             outcomes = list(pool.map(passes, cases(scripts, folder)))

@@ -263,11 +263,10 @@ def studies_over_8_MiB_are_refused(ricochet, folder):
 @test
 def what_later_versions_bring_is_refused_by_name(ricochet, folder):
     later = "not in this version"
-    kinds = ("diagram", "atlas", "basin")
+    kinds = ("atlas",)
     cases = [
         *(("kind: orbits", f"kind: {kind}", 1, f"kind = {kind}", later, "orbits") for kind in kinds),
         ("type: chain", "type: oscillator", 4, "model.type = oscillator", later, "chain"),
-        ("sweep:", "iterate: {keep: 1}\nsweep:", 16, "'iterate'", later),
         ("restitution: 1", "restitution: 0.8", 9, "model.restitution = 0.8", later),
     ]
     refuse_variations(ricochet, folder, cases)

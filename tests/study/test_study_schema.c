@@ -94,7 +94,7 @@ static void assert_allowed(study_key key, const char *expected) {
 
 static void allowed_values_are_said_in_words(void **state) {
   (void)state;
-  assert_allowed(KEY_KIND, "one of orbits, trajectory, branch, grazing");
+  assert_allowed(KEY_KIND, "one of orbits, trajectory, branch, grazing, diagram, basin");
   assert_allowed(KEY_TITLE, "text");
   assert_allowed(KEY_MODEL_PARTICLES, "an integer from 1 to 1000000000");
   assert_allowed(KEY_MODEL_ENDS, "one of periodic, fixed, free");

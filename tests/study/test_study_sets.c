@@ -106,8 +106,8 @@ static void refused_sets_begin_with_themselves(void **state) {
       {"sweep[0].points=0", "--set sweep[0].points=0: ", "sweep[0].points = 0 is out of range", "from 1 to"},
       {"orbit.at_start[0]=30", "--set orbit.at_start[0]=30: ", "orbit.at_start[0] = 30 is out of range", "0 to 29"},
       {"start.q=[1]", "--set start.q=[1]: ",
-       "start.q is a key of kind: trajectory or branch or grazing, and this is kind: orbits", ""},
-      {"kind=basin", "--set kind=basin: ", "kind = basin is not in this version", ""},
+       "start.q is a key of kind: trajectory or branch or grazing or diagram or basin, and this is kind: orbits", ""},
+      {"kind=atlas", "--set kind=atlas: ", "kind = atlas is not in this version", ""},
   };
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
     assert_refused(base_study, strlen(base_study), &cases[i].set, 1, cases[i].place, cases[i].phrase, cases[i].other);

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "attribute.h"
+#include "diagram_card.h"
 #include "grazing_card.h"
 #include "reader.h"
 #include "text_out.h"
@@ -303,6 +304,8 @@ int result_show(const char *path, message *why) {
     code = show_sweeps(&at, file);
   if (!code)
     code = grazing_cards_show(&at, file);
+  if (!code)
+    code = diagram_card_show(&at, file);
   if (!code)
     code = show_groups(&at, file);
   return hdf5_close(&at, file, text_out_finish(code, why));

@@ -32,12 +32,12 @@ int check_node_of_section(const study *s, const document *d, const char *section
 
 /* Whether the study has a periodic orbit to compute: its kind is `orbits`, or it starts on one. */
 static bool has_orbit(const study *s, const document *d) {
-  return study_is_kind(s, "orbits") || check_node_of_section(s, d, "orbit");
+  return study_is_kind(s, "orbits") || (!study_iterates(s) && check_node_of_section(s, d, "orbit"));
 }
 
 /* A branch whose period follows from its force, or whose guess is a normal mode, needs none. */
 static bool needs_period(const study *s, const document *d) {
-  if (!study_follows(s))
+  if (!study_follows(s) || study_iterates(s)) /* beyond grazing, motions are forced */
     return has_orbit(s, d);
   const bool forced = s->values[KEY_ORBIT_MOTION].text && strcmp(s->values[KEY_ORBIT_MOTION].text, "forced") == 0;
   return !forced && !branch_from_mode(s) && s->values[KEY_ORBIT_FORCING_PERIODS].numbers[0] == -INFINITY;
@@ -328,8 +328,9 @@ static int check_special_points(const study *s, const document *d, message *why)
 
 /* What an orbit needs, of a study that has one. */
 static int check_orbit(const study *s, const document *d, message *why) {
-  if (study_iterates(s) && !study_follows(s))
-    return 0;
+  const int misplaced = study_iterates(s) ? iterate_check_family(s, d, why) : 0;
+  if (misplaced || (study_iterates(s) && !study_follows(s)))
+    return misplaced;
   if (study_restarts(s))
     return branch_check_restart(s, d, why);
   if (study_follows(s)) {

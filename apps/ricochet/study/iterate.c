@@ -169,6 +169,9 @@ static int check_map(const study *s, const document *d, message *why) {
 static int check_section(const study *s, const document *d, message *why) {
   const double particle = first(s, KEY_ITERATE_PARTICLE);
   const int node = check_node_of_key(s, KEY_ITERATE_PARTICLE);
+  if (particle == -INFINITY && is_at_impacts(s) && !check_has_obstacle(s, last_with_obstacle(s)))
+    return document_refuse(d, s->values[KEY_ITERATE_SECTION].node, why,
+                           "iterate.section = impact, and no particle has a floor or a wall to hit (all are null)");
   if (particle == -INFINITY)
     return 0;
   if (!is_at_impacts(s))
@@ -184,13 +187,33 @@ static int check_section(const study *s, const document *d, message *why) {
 
 /* --- what is wanted ----------------------------------------------------------------------------------------------- */
 
-static int check_counts(const study *s, const document *d, message *why) {
+static int refuse_measure(const study *s, const document *d, int node, const char *label, double measure,
+                          message *why) {
+  return document_refuse(d, node, why, "%s = %.0f, expected at least iterate.keep = %.0f", label, measure,
+                         first(s, KEY_ITERATE_KEEP));
+}
+
+/* Iterates that are kept are among those that are measured. */
+static int check_measure(const study *s, const document *d, message *why) {
   const double keep = first(s, KEY_ITERATE_KEEP), measure = first(s, KEY_ITERATE_MEASURE);
-  const double size = (double)(study_state_size(s) - (!study_is_map(s) && is_at_impacts(s))),
-               exponents = first(s, KEY_ITERATE_EXPONENTS);
-  if (measure > -INFINITY && measure < keep)
-    return document_refuse(d, check_node_of_key(s, KEY_ITERATE_MEASURE), why,
-                           "iterate.measure = %.0f, expected at least iterate.keep = %.0f", measure, keep);
+  const sweep_entry *swept = sweep_over(s, KEY_ITERATE_MEASURE, -1);
+  for (size_t i = 0; swept && i < swept->view.points; i++)
+    if (swept->values[i] < keep)
+      return refuse_measure(s, d, sweep_value_node(d, swept, i), "swept iterate.measure", swept->values[i], why);
+  if (!swept && measure > -INFINITY && measure < keep)
+    return refuse_measure(s, d, s->values[KEY_ITERATE_MEASURE].node, "iterate.measure", measure, why);
+  return 0;
+}
+
+static int check_counts(const study *s, const document *d, message *why) {
+  const double size = (double)(study_state_size(s) - (!study_is_map(s) && is_at_impacts(s))); /* time has none */
+  const double exponents = first(s, KEY_ITERATE_EXPONENTS);
+  const int code = study_is_kind(s, "diagram") ? check_measure(s, d, why) : 0; /* others keep nothing */
+  if (code)
+    return code;
+  if (exponents > 1 && first(s, KEY_ITERATE_LYAPUNOV) == 0)
+    return document_refuse(d, s->values[KEY_ITERATE_EXPONENTS].node, why,
+                           "iterate.exponents = %.0f needs iterate.lyapunov: true", exponents);
   if (exponents > size)
     return document_refuse(d, check_node_of_key(s, KEY_ITERATE_EXPONENTS), why,
                            "iterate.exponents = %.0f, expected at most %.0f: a state has so many numbers", exponents,
@@ -217,7 +240,7 @@ static int check_windows(const study *s, const document *d, message *why) {
     return document_refuse(d, s->values[KEY_ITERATE_WINDOWS].node, why,
                            "iterate.windows = true needs iterate.section: strobe, and this is impact");
   const sweep_entry *last = &s->sweeps[s->sweep_count - 1];
-  for (size_t i = 2; i < last->view.points; i++)
+  for (size_t i = 1; i < last->view.points; i++)
     if (!((last->values[i] - last->values[i - 1]) * (last->values[1] - last->values[0]) > 0))
       return document_refuse(d, s->values[KEY_ITERATE_WINDOWS].node, why,
                              "iterate.windows = true needs rising or falling values of the last sweep, and those of %s "
@@ -231,8 +254,7 @@ static int check_windows(const study *s, const document *d, message *why) {
   return 0;
 }
 
-/* Families are for diagrams beyond grazing, whose sections are stroboscopic. */
-static int check_beyond(const study *s, const document *d, message *why) {
+int iterate_check_family(const study *s, const document *d, message *why) {
   static const char *const sections[] = {"branch", "orbit"};
   if (study_is_beyond(s)) {
     const int node = check_node_of_key(s, KEY_GRAZING_BEYOND);
@@ -260,7 +282,5 @@ int iterate_check(const study *s, const document *d, message *why) {
     code = check_counts(s, d, why);
   if (!code)
     code = check_line(s, d, KEY_ITERATE_FOLLOW, why);
-  if (!code)
-    code = check_beyond(s, d, why);
   return code ? code : check_windows(s, d, why);
 }

@@ -54,7 +54,10 @@ int branch_check_restart(const study *s, const document *d, message *why);
 
 /** Names what is observed, where a study that iterates leaves it to its model. */
 int iterate_read(study *s, message *why);
-/** Checks the keys of studies that iterate. */
+/** Checks that a study that iterates has the sections of a family beyond grazing only, and one whose map is that of its
+ * section. */
+int iterate_check_family(const study *s, const document *d, message *why);
+/** Checks the other keys of studies that iterate. */
 int iterate_check(const study *s, const document *d, message *why);
 
 /** Node that gives a key or sweeps it, 0 when it has its default. */

@@ -4,6 +4,7 @@
 
 #define OF_BRANCH  .kinds = "branch"
 #define OF_FAMILY  .kinds = "branch|grazing|diagram" /* of all kinds that follow a family */
+#define OF_TRACE   .kinds = "branch|grazing"         /* of those that follow curves in two parameters */
 #define OF_GRAZING .kinds = "grazing"
 #define NUMBER     .type = VALUE_NUMBER, .scalar = true, .no_sweep = "it says how the branch is followed"
 
@@ -172,7 +173,7 @@ static const schema_entry rows[KEY_ITERATE_TRANSIENT - KEY_BRANCH_PARAMETER] = {
          .type = VALUE_TEXT,
          .scalar = true,
          .required = true,
-         OF_FAMILY,
+         OF_TRACE,
          .no_sweep = "it is text, not a number",
          .doc = "With the section `branch.trace`, the special points of the branch are followed in two parameters, as "
                 "curves both ways; this is the second one, a number as `branch.parameter` names it. They begin at the "
@@ -181,13 +182,13 @@ static const schema_entry rows[KEY_ITERATE_TRANSIENT - KEY_BRANCH_PARAMETER] = {
                                                      NUMBER,
                                                      .required = true,
                                                      ANY,
-                                                     OF_FAMILY,
+                                                     OF_TRACE,
                                                      .doc = "Lower bound of the second parameter. Curves end there."},
     [KEY_BRANCH_TRACE_HIGH - KEY_BRANCH_PARAMETER] = {.path = "branch.trace.high",
                                                       NUMBER,
                                                       .required = true,
                                                       ANY,
-                                                      OF_FAMILY,
+                                                      OF_TRACE,
                                                       .doc = "Upper bound of the second parameter."},
     [KEY_BRANCH_TRACE_FIRST_LOW -
         KEY_BRANCH_PARAMETER] = {.path = "branch.trace.first_low",
@@ -195,7 +196,7 @@ static const schema_entry rows[KEY_ITERATE_TRANSIENT - KEY_BRANCH_PARAMETER] = {
                                  .null = true,
                                  .fallback = "null",
                                  ANY,
-                                 OF_FAMILY,
+                                 OF_TRACE,
                                  .doc =
                                      "Curves end, too, where `branch.parameter` falls below this value; null: none."},
     [KEY_BRANCH_TRACE_FIRST_HIGH - KEY_BRANCH_PARAMETER] = {.path = "branch.trace.first_high",
@@ -203,7 +204,7 @@ static const schema_entry rows[KEY_ITERATE_TRANSIENT - KEY_BRANCH_PARAMETER] = {
                                                             .null = true,
                                                             .fallback = "null",
                                                             ANY,
-                                                            OF_FAMILY,
+                                                            OF_TRACE,
                                                             .doc = "The same where it rises above this value."},
     [KEY_BRANCH_TRACE_STEP - KEY_BRANCH_PARAMETER] =
         {.path = "branch.trace.step",
@@ -213,7 +214,7 @@ static const schema_entry rows[KEY_ITERATE_TRANSIENT - KEY_BRANCH_PARAMETER] = {
          .low = 0,
          .low_open = true,
          .high = INFINITY,
-         OF_FAMILY,
+         OF_TRACE,
          .doc = "First step along a curve, in its arclength: the root of p^2 plus the mean square of the unknowns, "
                 "which are those of the motion and the branch's parameter, with the second parameter p; null: a "
                 "hundredth of the way from `low` to `high`."},
@@ -224,7 +225,7 @@ static const schema_entry rows[KEY_ITERATE_TRANSIENT - KEY_BRANCH_PARAMETER] = {
                                                            .low = 0,
                                                            .low_open = true,
                                                            .high = INFINITY,
-                                                           OF_FAMILY,
+                                                           OF_TRACE,
                                                            .doc = "Longest step; null: a fiftieth of that way."},
     [KEY_BRANCH_TRACE_POINTS - KEY_BRANCH_PARAMETER] = {.path = "branch.trace.points",
                                                         .type = VALUE_INTEGER,
@@ -233,7 +234,7 @@ static const schema_entry rows[KEY_ITERATE_TRANSIENT - KEY_BRANCH_PARAMETER] = {
                                                         .low = 1,
                                                         .high = 1e7,
                                                         .no_sweep = "it says how the branch is followed",
-                                                        OF_FAMILY,
+                                                        OF_TRACE,
                                                         .doc = "Most steps of a curve, each way."},
     [KEY_BRANCH_TRACE_KINDS - KEY_BRANCH_PARAMETER] = {.path = "branch.trace.kinds",
                                                        .type = VALUE_WORD,

@@ -32,7 +32,7 @@ static const column columns[] = {
     {.name = "attractor_period", INTEGER, .long_name = "period of the attractor, 0: none up to period_limit", SOURCE},
     {.name = "impacts", NUMBER, .long_name = "impacts per iterate, on the average", SOURCE},
     {.name = "lyapunov", NUMBER, .long_name = "largest Lyapunov exponent per iterate", SOURCE},
-    {.name = "exponent", NUMBER, .axes = {"exponent"}, .long_name = "Lyapunov exponents per iterate", SOURCE},
+    {.name = "exponents", NUMBER, .axes = {"exponent"}, .long_name = "Lyapunov exponents per iterate", SOURCE},
     {.name = "values", NUMBER, .axes = {"iterate"}, SOURCE},
     {.name = "state", NUMBER, .axes = {"iterate", "coordinate"}, .long_name = "kept iterates", SOURCE},
     {.name = "end", NUMBER, .axes = {"coordinate"}, .long_name = "state after all measured iterates", SOURCE},
@@ -120,5 +120,5 @@ void diagram_put_row(const table *rows, unsigned char *row, const ric_attractor 
   row_put_numbers(row, table_column(rows, "end"), a->z);
   if (table_column(rows, "lyapunov"))
     row_put_number(row, table_column(rows, "lyapunov"), a->exponents[0]);
-  row_put_numbers(row, table_column(rows, "exponent"), a->exponents);
+  row_put_numbers(row, table_column(rows, "exponents"), a->exponents);
 }

@@ -70,7 +70,7 @@ static const column columns[] = {
      .type = COLUMN_TEXT,
      .text_bytes = DIAGRAM_REASON_BYTES,
      .units = "1",
-     .long_name = "why the edges are not located; empty where they are",
+     .long_name = "why an edge is not located; empty where both are",
      SOURCE},
 };
 

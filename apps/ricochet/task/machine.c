@@ -40,7 +40,7 @@ int machine_refuse_size(const study *s, const char *what, double bytes, message 
   char place[256], needed[32], there[32];
   if (bytes <= machine_memory())
     return 0;
-  study_place(s, KEY_MODEL_PARTICLES, place, sizeof place);
+  study_place(s, study_is_map(s) ? KEY_ITERATE_KEEP : KEY_MODEL_PARTICLES, place, sizeof place);
   return refuse(why, EXIT_USAGE, "%s: %s of this size needs %s of memory, expected at most the %s of this machine",
                 place, what, machine_size(bytes, needed, sizeof needed),
                 machine_size(machine_memory(), there, sizeof there));

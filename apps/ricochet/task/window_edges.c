@@ -7,17 +7,17 @@
 #include "map_model.h"
 
 const char *const *window_edge_names(const study *s, size_t *count) {
-  static const char *const of_maps[RIC_GRAZING_EDGES] = {
+  static const char *const of_maps[RIC_GRAZING_EDGES + 1] = {
 #define X(name, text) text,
       RIC_GRAZING_EDGE_LIST(X)
 #undef X
-  };
-  static const char *const of_motions[RIC_FAMILY_KINDS] = {
+          "none"};
+  static const char *const of_motions[RIC_FAMILY_KINDS + 1] = {
 #define X(name, text) text,
       RIC_FAMILY_LIST(X)
 #undef X
-  };
-  *count = study_is_map(s) ? RIC_GRAZING_EDGES : RIC_FAMILY_KINDS;
+          "none"};
+  *count = study_is_map(s) ? RIC_GRAZING_EDGES + 1 : RIC_FAMILY_KINDS + 1;
   return study_is_map(s) ? of_maps : of_motions;
 }
 
@@ -87,6 +87,14 @@ static ric_status put_parameter(ric_system *system, const double *p, double *giv
   return ric_system_set_obstacles(system, it->model.obstacles, it->model.obstacle_count, error);
 }
 
+/* Why the curve came to an end at no special point; "" where it came to one, or to the end of the search. */
+static void put_reason(window_edges *edges, const ric_motion_window *window) {
+  const bool at_low = window->low.reason[0] != '\0';
+  const char *reason = at_low ? window->low.reason : window->high.reason;
+  if (reason[0])
+    snprintf(edges->reason, sizeof edges->reason, "%s: %.110s", at_low ? "low" : "high", reason);
+}
+
 static ric_status find_of_motion(iterated *it, size_t period, double p, double low, double high, const double *z,
                                  window_edges *edges, ric_error *error) {
   const lattice_model *m = &it->model;
@@ -112,6 +120,7 @@ static ric_status find_of_motion(iterated *it, size_t period, double p, double l
   edges->high_kind = (int)window.high.kind;
   edges->impacts = window.impacts;
   edges->multiplier = window.largest;
+  put_reason(edges, &window);
   if (!it->beyond || study_sweep_at(it->study, last_of(it))->key != KEY_GRAZING_BEYOND)
     return RIC_OK;
   return add_closed_form(&it->beyond->map, -1 / (it->beyond->slope * it->beyond->parameter), period, edges, error);
@@ -124,8 +133,8 @@ ric_status window_edges_find(iterated *it, size_t period, double p, double low, 
   ric_status status = state ? RIC_OK : RIC_ENOMEM;
   *edges = (window_edges){.low = NAN,
                           .high = NAN,
-                          .low_kind = it->maps ? (int)RIC_EDGE_OPEN : (int)RIC_FAMILY_REGULAR,
-                          .high_kind = it->maps ? (int)RIC_EDGE_OPEN : (int)RIC_FAMILY_REGULAR,
+                          .low_kind = it->maps ? (int)RIC_GRAZING_EDGES : (int)RIC_FAMILY_KINDS, /* none */
+                          .high_kind = it->maps ? (int)RIC_GRAZING_EDGES : (int)RIC_FAMILY_KINDS,
                           .multiplier = {NAN, NAN},
                           .map_low = NAN,
                           .map_high = NAN};

@@ -8,10 +8,10 @@
  * It has the period p when in all of those last ones each number returns after p iterates to where it was, within
  * period_tol of its extent in them, and does not part: what it is off does not grow from one time to the next at the
  * same place of the cycle; both but for rounding, of maps 1e-12 and of motions 1e-9 of the largest number. The smallest
- * p up to the limit counts, or the least part of it towards which the differences tend to zero: motions that come to a
- * cycle slowly, from alternating sides, return after two of its periods first. Near the edge of a window motions come
- * to their attractor, or leave what was one, arbitrarily slowly: there a period found on the attractor is not proof,
- * and none found neither; edges are exact by cycle_window.h. */
+ * p up to the limit counts; or half of it, where what the iterates are off after p / 2 shrinks to nothing as well:
+ * motions that come to a cycle slowly, from alternating sides, return after two of its periods first. Near the edge of
+ * a window motions come to their attractor, or leave what was one, arbitrarily slowly: there a period found on the
+ * attractor is not proof, and none found neither; edges are exact by cycle_window.h and motion_window.h. */
 #ifndef RICOCHET_ATTRACTOR_H
 #define RICOCHET_ATTRACTOR_H
 
