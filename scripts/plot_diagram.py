@@ -235,11 +235,13 @@ def draw_distance(axes, result, line, x):
     if (known & ~same).any():
         entries.append(Line2D([], [], marker="o", linestyle="", color="#9a9a9a", markerfacecolor="white", markersize=4,
                               label="other period, or none"))  # fmt: skip
-    if x.logarithmic and same.sum() > 1 and np.polyfit(*np.log([x.at[same], distance[same]]), 1)[0] > SPREADS:
+    fitted = np.polyfit(*np.log([x.at[same], distance[same]]), 1)[0] if x.logarithmic and same.sum() > 1 else 0
+    if fitted > SPREADS:
         look = {"color": figures.ORANGE, "linestyle": (0, (1, 1.5)), "linewidth": 1.4}
-        factor = np.exp(np.median(np.log(distance[same]) - np.log(x.at[same])))
-        axes.plot(x.at, factor * x.at, zorder=4, **look)
-        entries.append(Line2D([], [], label="slope 1", **look))
+        slope, words = (1, "1") if fitted > 0.75 else (0.5, "1/2")  # of linear motions, and of all others
+        factor = np.exp(np.median(np.log(distance[same]) - slope * np.log(x.at[same])))
+        axes.plot(x.at, factor * x.at**slope, zorder=4, **look)
+        entries.append(Line2D([], [], label=f"slope {words}", **look))
     figures.label_decades(axes.yaxis)
     return entries
 
