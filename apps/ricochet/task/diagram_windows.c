@@ -129,10 +129,11 @@ static ric_status narrow(search *k, size_t period, double *inside, double *outsi
 /* --- one window --------------------------------------------------------------------------------------------------- */
 
 /* How far edges are looked for: well beyond the sweep, where the parameter does not change its sign. */
+enum { BEYOND = 10 };
 static void find_bounds(const search *k, double *low, double *high) {
   const double a = fmin(k->values[0], k->values[k->points - 1]), b = fmax(k->values[0], k->values[k->points - 1]);
-  *low = a > 0 ? a / 2 : a - (b - a) / 2;
-  *high = b < 0 ? b / 2 : b > 0 && a > 0 ? 2 * b : b + (b - a) / 2;
+  *low = a > 0 ? a / BEYOND : b < 0 ? a * BEYOND : a - (b - a);
+  *high = b < 0 ? b / BEYOND : a > 0 ? b * BEYOND : b + (b - a);
 }
 
 static int64_t integer_of(const table *t, const unsigned char *row, const char *name) {
