@@ -39,18 +39,6 @@ static inline double number_of(uint64_t bits) {
   return x;
 }
 #include "map_lanes.h"
-#undef LANE
-#undef LANES
-#undef GROUPS
-#undef TARGET
-#undef NAMED
-#undef MASK
-#undef BITS
-#undef NOT_BELOW
-#undef KEEP
-#undef ANY
-#undef ROOT
-#undef AS_LANE
 
 #ifdef RIC_WIDE /* the compiler makes functions for processors other than the one at hand */
 #include <immintrin.h>
@@ -73,18 +61,6 @@ typedef uint64_t bits_eight __attribute__((vector_size(64), may_alias));
 #define ROOT(x)         _mm256_sqrt_pd(x)
 #define AS_LANE(bits)   ((lane_four)(bits))
 #include "map_lanes.h"
-#undef LANE
-#undef LANES
-#undef GROUPS
-#undef TARGET
-#undef NAMED
-#undef MASK
-#undef BITS
-#undef NOT_BELOW
-#undef KEEP
-#undef ANY
-#undef ROOT
-#undef AS_LANE
 
 #define LANE            lane_eight
 #define LANES           8
@@ -99,18 +75,6 @@ typedef uint64_t bits_eight __attribute__((vector_size(64), may_alias));
 #define ROOT(x)         _mm512_sqrt_pd(x)
 #define AS_LANE(bits)   ((lane_eight)(bits))
 #include "map_lanes.h"
-#undef LANE
-#undef LANES
-#undef GROUPS
-#undef TARGET
-#undef NAMED
-#undef MASK
-#undef BITS
-#undef NOT_BELOW
-#undef KEEP
-#undef ANY
-#undef ROOT
-#undef AS_LANE
 #endif
 
 map_kernel map_kernel_of(ric_map_lanes lanes) {

@@ -192,3 +192,15 @@ TARGET static void NAMED(advance)(map_block *b, double *trace, size_t count) {
 #undef GROUP
 #undef GIVEN
 #undef FOR_GROUPS
+#undef LANE
+#undef LANES
+#undef GROUPS
+#undef TARGET
+#undef NAMED
+#undef MASK
+#undef BITS
+#undef NOT_BELOW
+#undef KEEP
+#undef ANY
+#undef ROOT
+#undef AS_LANE
