@@ -6,7 +6,9 @@
  *   TARGET, NAMED(f) of functions of this variant
  *   NOT_BELOW(x, y)  a MASK: not x < y, true of NaN
  *   KEEP(mask, x)    x, or zero; ANY(mask); ROOT(x)
- *   BITS             the bits of a LANE, unsigned; AS_LANE(bits) is it again */
+ *   BITS             the bits of a LANE, unsigned; AS_LANE(bits) is it again
+ *
+ * At its end none of them is defined any more. */
 
 #define WIDTH      (LANES * GROUPS)
 #define GROUP(p)   (((LANE *)(p))[g])
