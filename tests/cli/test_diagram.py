@@ -101,6 +101,7 @@ def keys_and_values_are_refused_by_place_and_value(ricochet, folder):
         ("iterate:", "start: {q: 1}\niterate:", 3, "start.q " + model),
         ("lambda", "particles: 3, lambda", 2, "model.particles " + model),
         (keep, "section: impact", 3, "iterate.section " + model),
+        ("iterate:", "grazing: {beyond: 0.1}\niterate:", 3, "grazing.beyond " + model),
         (keep, "start: [0, 0]", 3, "iterate.start has 2 elements, expected 3, or a single number"),
         (keep, "observe: z4", 3, "iterate.observe = z4, expected z1 to z3"),
         (keep, "keep: 100, measure: 99", 3, "iterate.measure = 99, expected at least iterate.keep = 100"),
@@ -530,6 +531,9 @@ def motions_that_cannot_be_cut_are_rows(ricochet, folder):
     rows = found_by(ricochet, folder, swept(OSCILLATOR.replace("keep: 60", "keep: 5, section: impact"), "model.force, values: [22, 1]"),
                     name="still")
     assert rows["outcome"] == ["periodic", "failed"] and rows["reason"][1].startswith(b"no impact for ")
+    slow = OSCILLATOR.replace("force: 22,\n        frequency: 4", "force: 3, frequency: 0.005")
+    slow = found_by(ricochet, folder, slow.replace("keep: 60", "keep: 5, section: impact"), name="slow")
+    assert slow["outcome"] != ["failed"] and slow["impacts"].tolist() == [1]
     pushed = OSCILLATOR.replace("force: 22", "stiffness: -1, force: 0").replace("keep: 60", "keep: 3") + "start: {q: -0.5}\n"
     assert found_by(ricochet, folder, pushed, name="away")["outcome"] == ["diverged"]
 
@@ -577,6 +581,38 @@ def windows_of_motions_are_located_on_their_cycles(ricochet, folder):
     assert found["low_kind"][k] == "period_doubling" and found["high_kind"][k] == "grazing" and not found["reason"][k]
     assert abs(found["low"][k] / found["map_low"][k] - 1) < 1e-3 and abs(found["high"][k] / found["map_high"][k] - 1) < 1e-3
     assert found["low"][k] < 3.2e-4 and found["high"][k] > 6.3e-4
+
+
+@test
+def windows_end_where_the_parameter_is_zero(ricochet, folder):
+    """No bracket around zero is narrow relative to it."""
+    text = swept(MAP.replace(", d: 0.01", "").replace("keep: 100", "keep: 0, windows: true"), "model.d, from: -0.01, to: 0.012, points: 5")
+    found = found_by(ricochet, folder, text, group="window")
+    assert found["period"][0] == 1 and found["impacts"][0] == 0 and found["high_kind"][0] == "border" and found["high"][0] == 0
+    assert -1e-11 < found["high_inside"][0] <= 0 < found["high_outside"][0] < 1e-11
+
+
+BESIDE_JUMP = """kind: diagram
+model: {type: chain, particles: 1, ends: free, gamma: 0, floor: null, wall: 1, restitution: 0.8, damping: 0.1, frequency: 1.8}
+iterate: {transient: 300, keep: 0, measure: 50, follow: true, windows: true}
+"""
+
+
+@test
+def windows_of_one_period_are_told_apart_by_their_impacts(ricochet, folder):
+    """Both motions of x'' + 0.1 x' + x = a cos(1.8 t) have the period of the force, without an impact and with one."""
+    text = swept(BESIDE_JUMP, "model.force, values: [2.6, 2.4, 2.2, 2, 1.8, 1.6, 1.4, 1.2, 1]")
+    found = found_by(ricochet, folder, text, group="window")
+    assert found["period"].tolist() == [1, 1] and found["impacts"].tolist() == [1, 0] and found["tasks"].tolist() == [7, 2]
+    assert found["low_kind"][0] == "fold" and found["high_kind"][1] == "grazing"
+
+
+@test
+def brackets_of_a_line_that_is_followed_are_followed(ricochet, folder):
+    """Starts anew would come to the motion without impacts long before the fold."""
+    text = swept(BESIDE_JUMP, "model.force, values: [2.6, 2.4, 2.2, 2, 1.8, 1.6, 1.4, 1.2, 1]")
+    found = found_by(ricochet, folder, text, group="window")
+    assert found["low_outside"][0] < found["low"][0] < found["low_inside"][0] < 1.02 * found["low_outside"][0]
 
 
 @test

@@ -21,7 +21,7 @@ bool study_is_map(const study *s) {
 
 bool study_is_beyond(const study *s) {
   const typed_value *beyond = &s->values[KEY_GRAZING_BEYOND];
-  return study_is_kind(s, "diagram") && beyond->present && beyond->numbers[0] > -INFINITY;
+  return study_is_kind(s, "diagram") && !study_is_map(s) && beyond->present && beyond->numbers[0] > -INFINITY;
 }
 
 static bool is_at_impacts(const study *s) {

@@ -132,7 +132,7 @@ static const schema_entry rows[KEY_COUNT - KEY_ITERATE_TRANSIENT] = {
          .fallback = "false",
          .kinds = "diagram",
          .doc = "Along the last sweep every point starts where the one before it has ended, the first one at the start "
-                "of the study; false: all start there."},
+                "of the study, and a run that is stopped begins the line again; false: all start there."},
     [KEY_ITERATE_WINDOWS - KEY_ITERATE_TRANSIENT] =
         {.path = "iterate.windows",
          FLAG,

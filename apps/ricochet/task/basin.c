@@ -9,13 +9,17 @@
  * them, are one attractor: far more than what is left of a transient, far less than what parts two of them. */
 static const double same = 1e-4;
 
-enum { MOST_ATTRACTORS = 10000 };
+/* Beyond the first ones, attractors are not told apart: every task is compared with all of them. */
+enum { MOST_ATTRACTORS = 1000, LABEL_NONE = -1, LABEL_OTHER = -2 };
 
 #define INTEGER .type = COLUMN_I64, .units = "1"
 #define SOURCE  .source = "[FN97] section 6"
 
 static const column task_columns[] = {
-    {.name = "attractor", INTEGER, .long_name = "which attractor the start comes to; -1: none", SOURCE},
+    {.name = "attractor",
+     INTEGER,
+     .long_name = "which attractor the start comes to; -1: none, -2: one past the first 1000",
+     SOURCE},
 };
 
 static const column attractor_columns[] = {
@@ -48,48 +52,50 @@ static bool is_near(const double *a, const double *b, size_t size) {
   return apart <= same * largest;
 }
 
-static int64_t integer_of(const unsigned char *row, const column *c) {
-  int64_t value;
-  memcpy(&value, row + c->offset, sizeof value);
-  return value;
-}
-
 /* Index of the attractor of a task, the number of those found where it is a new one. */
 static uint64_t find(const sorting *k, int64_t period, const double *lowest) {
   const column *known = table_column(&k->attractors, "found_period");
   uint64_t i = 0;
   for (; i < k->found.count; i++) {
     unsigned char *row = k->found.bytes + i * k->attractors.row_bytes;
-    if (integer_of(row, known) == period &&
+    if (row_integer(row, known) == period &&
         (period == 0 || is_near(lowest, row_numbers(row, table_column(&k->attractors, "found_lowest")), k->size)))
       break;
   }
   return i;
 }
 
-/* @returns 0, or -1 without memory or with too many attractors */
+/* @returns the new one, NULL without memory */
+static unsigned char *add_attractor(sorting *k, uint64_t task, int64_t period, const double *lowest) {
+  const table *t = &k->attractors;
+  unsigned char *added = records_add(&k->found);
+  if (added) {
+    row_put_integer(added, table_column(t, "found_period"), period);
+    row_put_integer(added, table_column(t, "found_first"), (long long)task);
+    row_put_numbers(added, table_column(t, "found_lowest"), lowest);
+  }
+  return added;
+}
+
+/* @returns 0, or -1 without memory */
 static int sort_task(sorting *k, uint64_t task) {
   const table *rows = &k->plan->rows, *t = &k->attractors;
   unsigned char *label = k->labels + task * k->tasks.row_bytes;
   const int outcome = k->row[table_column(rows, "outcome")->offset];
   if (outcome != RIC_ATTRACTOR_PERIODIC && outcome != RIC_ATTRACTOR_APERIODIC) {
-    row_put_integer(label, table_column(&k->tasks, "attractor"), -1);
+    row_put_integer(label, table_column(&k->tasks, "attractor"), LABEL_NONE);
     return 0;
   }
-  const int64_t period = integer_of(k->row, table_column(rows, "attractor_period"));
+  const int64_t period = row_integer(k->row, table_column(rows, "attractor_period"));
   const double *lowest = row_numbers(k->row, table_column(rows, "lowest"));
   const uint64_t i = find(k, period, lowest);
-  if (i == k->found.count) {
-    unsigned char *added = i < MOST_ATTRACTORS ? records_add(&k->found) : NULL;
-    if (!added)
-      return -1;
-    row_put_integer(added, table_column(t, "found_period"), period);
-    row_put_integer(added, table_column(t, "found_first"), (long long)task);
-    row_put_numbers(added, table_column(t, "found_lowest"), lowest);
-  }
+  row_put_integer(label, table_column(&k->tasks, "attractor"), i < MOST_ATTRACTORS ? (long long)i : LABEL_OTHER);
+  if (i == MOST_ATTRACTORS)
+    return 0;
+  if (i == k->found.count && !add_attractor(k, task, period, lowest))
+    return -1;
   unsigned char *of = k->found.bytes + i * t->row_bytes;
-  row_put_integer(of, table_column(t, "found_tasks"), integer_of(of, table_column(t, "found_tasks")) + 1);
-  row_put_integer(label, table_column(&k->tasks, "attractor"), (long long)i);
+  row_put_integer(of, table_column(t, "found_tasks"), row_integer(of, table_column(t, "found_tasks")) + 1);
   return 0;
 }
 
@@ -113,8 +119,7 @@ static int sort_all(sorting *k, const study *s, const row_source *done, ric_poll
       return refuse(why, EXIT_STOPPED, "%s: stopped at its attractors", study_name(s));
     code = done->read(done->user, task, 1, k->row, why);
     if (!code && sort_task(k, task) != 0)
-      code =
-          refuse(why, EXIT_RUN, "%s: more than %d attractors, or no memory for them", study_name(s), MOST_ATTRACTORS);
+      code = refuse(why, EXIT_RUN, "%s: no memory for the attractors", study_name(s));
   }
   return code;
 }

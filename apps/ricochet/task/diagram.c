@@ -1,6 +1,7 @@
 /* kinds: diagram, basin. The attractor of a map, or of a motion on a section, at every grid point. */
 #include "diagram.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -19,8 +20,15 @@ struct worker {
 
 /* --- before the tasks --------------------------------------------------------------------------------------------- */
 
+enum { BATCH_BYTES = 64 << 20 /* of rows that wait for one another, unless one has more */ };
+
 static size_t line_of(const study *s) {
   return study_sweeps(s) > 0 ? study_sweep_at(s, study_sweeps(s) - 1)->points : 1;
+}
+
+/* Tasks that run side by side. */
+static size_t slots_of(const study *s, double row_bytes) {
+  return (size_t)fmax(1, fmin((double)iterated_slots(s), BATCH_BYTES / row_bytes));
 }
 
 static int diagram_plan(const study *s, kind_plan *plan, message *why) {
@@ -29,8 +37,8 @@ static int diagram_plan(const study *s, kind_plan *plan, message *why) {
     return refuse(why, EXIT_RUN, "%s: no memory for the values of a task", study_name(s));
   *plan = (kind_plan){.outcome = "outcome"};
   plan->whole = value_flag(v, KEY_ITERATE_FOLLOW);
-  plan->batch = plan->whole ? line_of(s) : iterated_slots(s);
-  plan->memory = iterated_bytes(s) + (double)plan->batch * diagram_row_bytes(s, v);
+  plan->batch = plan->whole ? line_of(s) : slots_of(s, diagram_row_bytes(s, v));
+  plan->memory = iterated_bytes(s, v) + (double)plan->batch * diagram_row_bytes(s, v);
   const int code = machine_refuse_size(s, "a task", plan->memory, why);
   if (!code)
     diagram_lay_out(s, v, &plan->rows);

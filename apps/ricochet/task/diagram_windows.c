@@ -6,8 +6,15 @@
 #include "diagram.h"
 #include "window_edges.h"
 
-/* Brackets on the attractor are this narrow, relative to the parameter. */
-static const double bracket_width = 1e-2;
+/* Brackets on the attractor are this narrow, relative to the parameter; where they close in on zero, as at d = 0
+ * itself, relative to the distance of the two values of the sweep. */
+static const double bracket_width = 1e-2, bracket_least = 1e-9;
+
+/* What is seen of an attractor. */
+typedef struct sight {
+  size_t period;   /* 0: no period */
+  int64_t impacts; /* in a period; -1: too few iterates are measured to tell */
+} sight;
 
 /* A search for windows, and what it has found. */
 typedef struct search {
@@ -17,18 +24,22 @@ typedef struct search {
   size_t sweep, points;  /* the last sweep */
   const double *values;  /* [points] of it */
   uint64_t line;         /* first task of the line at hand */
-  int64_t *periods;      /* [points] of its tasks, 0: no period */
+  sight *sights;         /* [points] of its tasks */
   unsigned char *row;    /* of a task */
   double *z, *exponents; /* [size] of attractors that are run here */
+  bool goes_on;          /* the last of them has come to something */
+  bool follows;          /* iterate.follow: brackets are followed as the line was */
+  double *ends;          /* [points][size] where the tasks of the line have ended, NaN where they came to nothing */
+  double *from;          /* [size] where the attractor that is followed has ended */
   table layout;
   records found;
   message *why;
 } search;
 
-/* Consecutive tasks of a line with one period. */
+/* Consecutive tasks of a line with one period and as many impacts. */
 typedef struct span {
   size_t first, last;
-  size_t period;
+  sight of;
 } span;
 
 #define NUMBER  .type = COLUMN_F64, .units = "1"
@@ -104,24 +115,49 @@ static int read_row(const search *k, size_t point) {
   return k->done->read(k->done->user, k->line + point, 1, k->row, k->why);
 }
 
-/* The period of the attractor at a value, 0: none. The line's first task says the rest. */
-static ric_status period_at(search *k, double value, size_t *period) {
+/* Where periods are not measured as a whole, the rest counts for at most as many impacts as a period has. */
+static sight sight_of(const search *k, size_t period, double impacts) {
+  const double of_period = impacts * (double)period;
+  const size_t measured = iterated_measured(&k->it);
+  if (period == 0)
+    return (sight){0};
+  const bool tells = measured % period == 0 || (double)measured > 2 * (of_period + 1) * (double)period;
+  return (sight){.period = period, .impacts = tells ? llround(of_period) : -1};
+}
+
+/* Whether two attractors may belong to one window. */
+static bool are_alike(const sight *a, const sight *b) {
+  return a->period == b->period && (a->impacts == b->impacts || a->impacts < 0 || b->impacts < 0);
+}
+
+/* The attractor at a value. The line's first task says the rest. @param from  [size] its start; NULL: the study's */
+static ric_status look_at(search *k, double value, const double *from, sight *seen) {
   ric_attractor a = {.z = k->z, .exponents = k->exponents};
   study_values_at(k->it.values, k->line);
   study_values_sweep(k->it.values, k->sweep, value);
   iterated_take(&k->it, 0, k->z);
+  if (from)
+    memcpy(k->z, from, k->it.size * sizeof *from);
   RIC_TRY(iterated_run(&k->it, 1, &a));
-  *period = a.kind == RIC_ATTRACTOR_PERIODIC ? a.period : 0;
+  k->goes_on = a.kind == RIC_ATTRACTOR_PERIODIC || a.kind == RIC_ATTRACTOR_APERIODIC;
+  *seen = sight_of(k, a.kind == RIC_ATTRACTOR_PERIODIC ? a.period : 0, a.impacts);
   return RIC_OK;
 }
 
-/* Halves the way from a value inside to one outside until it is narrow. */
-static ric_status narrow(search *k, size_t period, double *inside, double *outside) {
-  while (fabs(*inside - *outside) > bracket_width * fmax(fabs(*inside), fabs(*outside))) {
+/* Halves the way from a value inside to one outside until it is narrow.
+ * @param earlier  the point of the two from which a line that is followed comes to the edge */
+static ric_status narrow(search *k, const span *w, size_t earlier, double *inside, double *outside) {
+  const double least = bracket_least * fabs(*inside - *outside), *end = k->ends + earlier * k->it.size;
+  const bool starts_inside = earlier >= w->first, follows = k->follows && !isnan(end[0]);
+  memcpy(k->from, end, k->it.size * sizeof *end);
+  while (fabs(*inside - *outside) > fmax(least, bracket_width * fmax(fabs(*inside), fabs(*outside)))) {
     const double middle = (*inside + *outside) / 2;
-    size_t there;
-    RIC_TRY(period_at(k, middle, &there));
-    *(there == period ? inside : outside) = middle;
+    sight there;
+    RIC_TRY(look_at(k, middle, follows ? k->from : NULL, &there));
+    const bool is_inside = are_alike(&there, &w->of);
+    *(is_inside ? inside : outside) = middle;
+    if (is_inside == starts_inside && k->goes_on)
+      memcpy(k->from, k->z, k->it.size * sizeof *k->z);
   }
   return RIC_OK;
 }
@@ -137,21 +173,22 @@ static void find_bounds(const search *k, double *low, double *high) {
 }
 
 static int64_t integer_of(const table *t, const unsigned char *row, const char *name) {
-  int64_t value;
-  memcpy(&value, row + table_column(t, name)->offset, sizeof value);
-  return value;
+  return row_integer(row, table_column(t, name));
 }
 
 /* Whether a window of the present line, among the first `count`, has been located around a value, with this period or a
- * part of it: near a flip the attractor is slow, and hides its period or returns only after two of them. */
-static bool is_known(const search *k, uint64_t count, size_t period, double value) {
+ * part of it, and its impacts: near a flip the attractor is slow, and hides its period or returns only after two of
+ * them. */
+static bool is_known(const search *k, uint64_t count, const sight *of, double value) {
   const table *t = &k->layout;
   for (uint64_t i = count; i-- > 0;) {
     unsigned char *row = k->found.bytes + i * t->row_bytes;
     if ((uint64_t)integer_of(t, row, "task") < k->line)
       return false;
-    if (period % (size_t)integer_of(t, row, "period") == 0 && *row_numbers(row, table_column(t, "low")) < value &&
-        *row_numbers(row, table_column(t, "high")) > value)
+    const int64_t period = integer_of(t, row, "period"), times = (int64_t)of->period / period;
+    if ((int64_t)of->period == times * period &&
+        (of->impacts < 0 || of->impacts == times * integer_of(t, row, "impacts")) &&
+        *row_numbers(row, table_column(t, "low")) < value && *row_numbers(row, table_column(t, "high")) > value)
       return true;
   }
   return false;
@@ -163,9 +200,8 @@ static void drop_known(search *k, uint64_t first) {
   uint64_t kept = first;
   for (uint64_t i = first; i < k->found.count; i++) {
     unsigned char *row = k->found.bytes + i * t->row_bytes;
-    const bool located = integer_of(t, row, "impacts") >= 0;
-    const size_t period = (size_t)integer_of(t, row, "period");
-    if (!located && is_known(k, k->found.count, period, *row_numbers(row, table_column(t, "parameter"))))
+    const sight of = {.period = (size_t)integer_of(t, row, "period"), .impacts = integer_of(t, row, "impacts")};
+    if (of.impacts < 0 && is_known(k, k->found.count, &of, *row_numbers(row, table_column(t, "parameter"))))
       continue;
     memmove(k->found.bytes + kept++ * t->row_bytes, row, t->row_bytes);
   }
@@ -178,7 +214,7 @@ static void put_window(const search *k, unsigned char *row, const span *w, size_
   const table *t = &k->layout;
   row_put_integer(row, table_column(t, "task"), (long long)(k->line + point));
   row_put_integer(row, table_column(t, "tasks"), (long long)(w->last - w->first + 1));
-  row_put_integer(row, table_column(t, "period"), (long long)w->period);
+  row_put_integer(row, table_column(t, "period"), (long long)w->of.period);
   row_put_integer(row, table_column(t, "impacts"), e->located ? (long long)e->impacts : -1);
   row_put_number(row, table_column(t, "parameter"), k->values[point]);
   row_put_number(row, table_column(t, "low"), e->low);
@@ -198,11 +234,11 @@ static ric_status find_bracket(search *k, const span *w, double *bracket) {
   double first[2] = {k->values[w->first], NAN}, last[2] = {k->values[w->last], NAN}; /* inside, outside */
   if (w->first > 0) {
     first[1] = k->values[w->first - 1];
-    RIC_TRY(narrow(k, w->period, &first[0], &first[1]));
+    RIC_TRY(narrow(k, w, w->first - 1, &first[0], &first[1]));
   }
   if (w->last + 1 < k->points) {
     last[1] = k->values[w->last + 1];
-    RIC_TRY(narrow(k, w->period, &last[0], &last[1]));
+    RIC_TRY(narrow(k, w, w->last, &last[0], &last[1]));
   }
   const bool rises = k->values[k->points - 1] >= k->values[0];
   const double *low = rises ? first : last, *high = rises ? last : first;
@@ -218,7 +254,7 @@ static int add_window(search *k, const span *w) {
   const size_t point = w->first + (w->last - w->first) / 2;
   double low, high, bracket[4];
   window_edges edges;
-  if (is_known(k, k->found.count, w->period, k->values[point]))
+  if (is_known(k, k->found.count, &w->of, k->values[point]))
     return 0;
   const int code = read_row(k, point);
   if (code)
@@ -227,7 +263,7 @@ static int add_window(search *k, const span *w) {
   ric_status status = find_bracket(k, w, bracket);
   study_values_at(k->it.values, k->line + point);
   if (status == RIC_OK)
-    status = window_edges_find(&k->it, w->period, k->values[point], low, high,
+    status = window_edges_find(&k->it, w->of.period, k->values[point], low, high,
                                row_numbers(k->row, table_column(&k->plan->rows, "end")), &edges);
   if (status != RIC_OK)
     return refuse(k->why, EXIT_STOPPED, "%s: stopped at its windows", study_name(k->it.study));
@@ -240,13 +276,26 @@ static int add_window(search *k, const span *w) {
 
 /* --- all of them -------------------------------------------------------------------------------------------------- */
 
+/* From where a line that is followed goes on behind a task. */
+static void put_end(search *k, size_t point) {
+  const table *rows = &k->plan->rows;
+  const int outcome = k->row[table_column(rows, "outcome")->offset];
+  double *end = k->ends + point * k->it.size;
+  memcpy(end, row_numbers(k->row, table_column(rows, "end")), k->it.size * sizeof *end);
+  if (outcome != RIC_ATTRACTOR_PERIODIC && outcome != RIC_ATTRACTOR_APERIODIC)
+    end[0] = NAN;
+}
+
 static int read_line(search *k) {
-  const column *period = table_column(&k->plan->rows, "attractor_period");
+  const table *rows = &k->plan->rows;
+  study_values_at(k->it.values, k->line);
   for (size_t i = 0; i < k->points; i++) {
     const int code = read_row(k, i);
     if (code)
       return code;
-    memcpy(&k->periods[i], k->row + period->offset, sizeof k->periods[i]);
+    k->sights[i] = sight_of(k, (size_t)integer_of(rows, k->row, "attractor_period"),
+                            *row_numbers(k->row, table_column(rows, "impacts")));
+    put_end(k, i);
   }
   return 0;
 }
@@ -255,10 +304,10 @@ static int search_line(search *k) {
   const uint64_t first = k->found.count;
   int code = read_line(k);
   for (size_t i = 0, next; i < k->points && !code; i = next) {
-    for (next = i + 1; next < k->points && k->periods[next] == k->periods[i];)
+    for (next = i + 1; next < k->points && are_alike(&k->sights[next], &k->sights[i]);)
       next++;
-    if (k->periods[i] > 0)
-      code = add_window(k, &(span){.first = i, .last = next - 1, .period = (size_t)k->periods[i]});
+    if (k->sights[i].period > 0)
+      code = add_window(k, &(span){.first = i, .last = next - 1, .of = k->sights[i]});
   }
   drop_known(k, first);
   return code;
@@ -269,11 +318,14 @@ static int set_up(search *k, const study *s, ric_poll poll) {
   if (code)
     return code;
   const size_t exponents = (size_t)value_number(k->it.values, KEY_ITERATE_EXPONENTS, 0);
-  k->periods = calloc(k->points, sizeof *k->periods);
+  k->sights = calloc(k->points, sizeof *k->sights);
   k->row = calloc(1, k->plan->rows.row_bytes);
-  k->z = calloc(k->it.size, sizeof *k->z);
+  k->follows = value_flag(k->it.values, KEY_ITERATE_FOLLOW);
+  k->ends = calloc(k->points * k->it.size, sizeof *k->ends);
+  k->z = calloc(2 * k->it.size, sizeof *k->z);
+  k->from = k->z ? k->z + k->it.size : NULL;
   k->exponents = calloc(exponents, sizeof *k->exponents);
-  if (k->periods && k->row && k->z && k->exponents)
+  if (k->sights && k->row && k->ends && k->z && k->exponents)
     return 0;
   return refuse(k->why, EXIT_RUN, "%s: no memory for the windows", study_name(s));
 }
@@ -302,8 +354,9 @@ int diagram_windows(const study *s, const kind_plan *plan, const row_source *don
   else
     records_clear(&k.found);
   iterated_clear(&k.it);
-  free(k.periods);
+  free(k.sights);
   free(k.row);
+  free(k.ends);
   free(k.z);
   free(k.exponents);
   return code;

@@ -9,17 +9,31 @@
 #include "map_model.h"
 
 enum {
-  MAP_SLOTS = 64,      /* several vectors of values, so that one does not wait for another */
-  MOTION_BYTES = 65536 /* of a trajectory with its flow and tangent vectors, per number of the state, roughly */
+  MAP_SLOTS = 64,       /* several vectors of values, so that one does not wait for another */
+  MAP_LANES = 33,       /* that keep their states for the period, in the widest variant, and one map's by itself */
+  MOTION_BYTES = 65536, /* of a trajectory with its flow and tangent vectors, per number of the state, roughly */
+  WAIT_PERIODS = 100    /* of the force without an impact of the section, at least, before it is not met any more */
 };
 
 size_t iterated_slots(const study *s) {
   return study_is_map(s) ? MAP_SLOTS : 1;
 }
 
-double iterated_bytes(const study *s) {
-  const double size = (double)study_state_size(s);
-  return study_is_map(s) ? MAP_SLOTS * 8 * (2 * size * (size + 8)) : size * (MOTION_BYTES + LATTICE_MODEL_BYTES);
+/* Iterates that decide on the longest period of all tasks. */
+static double deciding(const study *s, const study_values *v) {
+  double limit = value_number(v, KEY_ITERATE_PERIOD_LIMIT, 0);
+  for (size_t i = 0; i < study_sweeps(s); i++) {
+    const study_sweep *sweep = study_sweep_at(s, i);
+    for (size_t k = 0; sweep->key == KEY_ITERATE_PERIOD_LIMIT && k < sweep->points; k++)
+      limit = fmax(limit, sweep->values[k]);
+  }
+  return 2 * limit + 2;
+}
+
+double iterated_bytes(const study *s, const study_values *v) {
+  const double size = (double)study_state_size(s), states = 8 * size * deciding(s, v);
+  return study_is_map(s) ? MAP_SLOTS * 8 * (2 * size * (size + 8)) + MAP_LANES * states
+                         : size * (MOTION_BYTES + LATTICE_MODEL_BYTES) + states;
 }
 
 /* --- storage ------------------------------------------------------------------------------------------------------ */
@@ -63,14 +77,23 @@ void iterated_clear(iterated *it) {
 
 /* --- a task ------------------------------------------------------------------------------------------------------- */
 
+static size_t kept_of(const iterated *it) {
+  const bool is_diagram = strcmp(study_kind(it->study), "diagram") == 0;
+  return is_diagram ? (size_t)value_number(it->values, KEY_ITERATE_KEEP, 0) : 0;
+}
+
+size_t iterated_measured(const iterated *it) {
+  const double measure = value_number(it->values, KEY_ITERATE_MEASURE, 0);
+  const size_t keep = kept_of(it);
+  return measure > 0 ? (size_t)measure : keep > 0 ? keep : ric_attractor_options_default().measure;
+}
+
 static ric_attractor_options options_of(const iterated *it) {
   const study_values *v = it->values;
   ric_attractor_options o = ric_attractor_options_default();
-  const double measure = value_number(v, KEY_ITERATE_MEASURE, 0);
-  const bool is_diagram = strcmp(study_kind(it->study), "diagram") == 0;
   o.transient = (size_t)value_number(v, KEY_ITERATE_TRANSIENT, 0);
-  o.keep = is_diagram ? (size_t)value_number(v, KEY_ITERATE_KEEP, 0) : 0;
-  o.measure = measure > 0 ? (size_t)measure : o.keep > 0 ? o.keep : o.measure;
+  o.keep = kept_of(it);
+  o.measure = iterated_measured(it);
   o.observe = study_observed(it->study);
   o.exponents = value_flag(v, KEY_ITERATE_LYAPUNOV) ? (size_t)value_number(v, KEY_ITERATE_EXPONENTS, 0) : 0;
   o.period_limit = (size_t)value_number(v, KEY_ITERATE_PERIOD_LIMIT, 0);
@@ -122,6 +145,7 @@ static void take_motion(iterated *it, double *z) {
   it->section.kind =
       strcmp(value_word(v, KEY_ITERATE_SECTION), "impact") == 0 ? RIC_SECTION_IMPACT : RIC_SECTION_STROBE;
   it->section.phase = value_number(v, KEY_ITERATE_PHASE, 0);
+  it->section.wait = fmax(it->section.wait, WAIT_PERIODS * it->section.period);
   it->section.obstacle = obstacle_of(&it->model, value_number(v, KEY_ITERATE_PARTICLE, 0));
   it->section.trajectory.flow.tolerance = tolerance > 0 ? tolerance : 0; /* null reads as minus infinity */
   it->section.trajectory.poll = it->poll;

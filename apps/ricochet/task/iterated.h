@@ -38,11 +38,14 @@ typedef struct iterated {
 size_t iterated_slots(const study *s);
 
 /** Bytes that it takes. */
-double iterated_bytes(const study *s);
+double iterated_bytes(const study *s, const study_values *v);
 
 /** @param it  iterated_clear also after a refusal  @returns 0, or EXIT_RUN without memory */
 int iterated_init(iterated *it, const study *s, ric_poll poll, message *why);
 void iterated_clear(iterated *it);
+
+/** Iterates over which impacts and exponents of the present task are averaged. */
+size_t iterated_measured(const iterated *it);
 
 /** Takes the present task as the one of a slot, with its start.
  *  @param z  [size] set */

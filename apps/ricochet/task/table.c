@@ -1,7 +1,6 @@
 #include "table.h"
 
 #include <stdbool.h>
-#include <stdint.h>
 #include <string.h>
 
 size_t column_value_bytes(const column *c) {
@@ -123,6 +122,12 @@ void row_put_integer_at(unsigned char *row, const column *c, size_t i, long long
 
 void row_put_integer(unsigned char *row, const column *c, long long value) {
   row_put_integer_at(row, c, 0, value);
+}
+
+int64_t row_integer(const unsigned char *row, const column *c) {
+  int64_t value;
+  memcpy(&value, row + c->offset, sizeof value);
+  return value;
 }
 
 void row_put_word_at(unsigned char *row, const column *c, size_t i, int value) {

@@ -7,6 +7,7 @@
 #define RICOCHET_APP_TABLE_H
 
 #include <stddef.h>
+#include <stdint.h>
 
 typedef enum column_type {
   COLUMN_F64,
@@ -98,6 +99,9 @@ void row_put_text(unsigned char *row, const column *c, const char *text);
 /** Writes value `i` of a column with further axes. */
 void row_put_integer_at(unsigned char *row, const column *c, size_t i, long long value);
 void row_put_word_at(unsigned char *row, const column *c, size_t i, int value);
+
+/** The integer of a column without further axes. */
+int64_t row_integer(const unsigned char *row, const column *c);
 
 /** Where the numbers of a column stand in a row, to be filled in place; NULL for a NULL column. The row begins at a
  *  multiple of 8 bytes. */
