@@ -25,6 +25,18 @@ DONE, RUN, USAGE, FILES, STOPPED = 0, 1, 2, 3, 75
 _tests = []
 
 
+# Shipped grids that are made for pictures, with fewer points.
+COARSER = {"basin": {"[0]": 20, "[1]": 20}, "basin_oscillator": {"[0]": 5, "[1]": 5},
+           "period_map": {"[0]": 20, "[1]": 20}, "diagram_oscillator": {"[1]": 16}, "diagram_overlaps": {"": 16},
+           "diagram_five": {"": 6}, "diagram_discontinuous": {"": 16}, "diagram_scaled": {"": 200},
+           "diagram_coexisting": {"": 100}}  # fmt: skip
+
+
+def coarser(path):
+    """Words of the command line that make a shipped study short."""
+    return [word for entry, n in COARSER.get(path.stem, {}).items() for word in ("--set", f"sweep{entry}.points={n}")]
+
+
 class Skip(Exception):
     """The machine does not allow this test."""
 

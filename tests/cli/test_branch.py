@@ -96,7 +96,7 @@ def motions_that_do_not_fit_the_model_are_refused(ricochet, folder):
 def keys_of_branches_belong_to_them(ricochet, folder):
     write(folder, "s.yaml", study() + "branch: {from: 1}\n")
     ricochet("check", "s.yaml", cwd=folder).expect_refused(
-        USAGE, "s.yaml:4: branch.from is a key of kind: branch or grazing, and this is kind: orbits")
+        USAGE, "s.yaml:4: branch.from is a key of kind: branch or grazing or diagram, and this is kind: orbits")
     write(folder, "s.yaml", BASE)
     ricochet("check", "s.yaml", "--set", "branch.high=-1", cwd=folder).expect_refused(
         USAGE, "--set branch.high=-1: branch.high (model.gamma) = -1 is out of range")

@@ -173,8 +173,9 @@ def examples_can_be_piped_into_check_and_run(ricochet, folder):
 @test
 def every_shipped_study_is_valid_and_runs(ricochet, folder):
     for path in sorted(ricochet.studies.glob("*.yaml")):
-        tasks = int(program.only(ricochet("check", path, cwd=folder).expect(DONE).out, r"tasks +(\d+)"))
-        result = ricochet.run(path, cwd=folder, ranks=2).expect(DONE)
+        sets = program.coarser(path)
+        tasks = int(program.only(ricochet("check", path, *sets, cwd=folder).expect(DONE).out, r"tasks +(\d+)"))
+        result = ricochet.run(path, *sets, cwd=folder, ranks=2).expect(DONE)
         assert result.out.startswith(f"{tasks} task{'s' if tasks > 1 else ''}: ") and result.err == "", result
         counts = [int(n) for n in program.re.findall(r"(\d+) [a-z_]+(?:,| ->)", result.out)]
         assert sum(counts) == tasks, result

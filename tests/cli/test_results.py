@@ -8,7 +8,7 @@ import h5py
 import numpy as np
 import program
 import xarray
-from program import assert_same, names, study, sweep, test, words_of, write
+from program import assert_same, coarser, names, study, sweep, test, words_of, write
 
 TABLE = "{parameter: model.gamma, values: [0.05, 0.149153131912, 0.187, 0.19444444444444445]}"
 
@@ -19,18 +19,12 @@ def run(ricochet, folder, text, *words, name="s", **options):
     return folder / f"{name}.h5"
 
 
-# Grids that are made for pictures, with fewer points.
-COARSER = {"basin": {"[0]": 20, "[1]": 20}, "period_map": {"[0]": 20, "[1]": 20}, "diagram_oscillator": {"[1]": 20},
-           "diagram_five": {"": 10}, "diagram_discontinuous": {"": 20}}
-
-
 @functools.cache
 def shipped(ricochet):
     """The results of all shipped studies, computed once."""
     paths = sorted(ricochet.studies.glob("*.yaml"))
     for path in paths:
-        sets = [w for entry, n in COARSER.get(path.stem, {}).items() for w in ("--set", f"sweep{entry}.points={n}")]
-        ricochet.run(path, *sets, cwd=ricochet.shared).expect_done()
+        ricochet.run(path, *coarser(path), cwd=ricochet.shared).expect_done()
     return [ricochet.shared / f"{path.stem}.h5" for path in paths]
 
 
