@@ -1,7 +1,6 @@
 #include "lyapunov_course.h"
 
 #include <math.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -28,16 +27,6 @@ static ric_status check(const ric_lyapunov_options *o, size_t size, double end, 
   if (!(o->transient >= 0 && o->transient < INFINITY))
     return ric_fail(error, RIC_EINVAL, "transient = %g, expected a finite number >= 0", o->transient);
   return RIC_OK;
-}
-
-/* Numbers with no pattern, always the same ones (a linear congruence): vectors that lie along the axes would miss for
- * long what grows elsewhere. */
-static void scatter(double *x, size_t count) {
-  uint64_t state = 1;
-  for (size_t i = 0; i < count; i++) {
-    state = state * 6364136223846793005u + 1442695040888963407u;
-    x[i] = (double)(state >> 11) / 0x1p52 - 1;
-  }
 }
 
 static ric_status allocate(lyapunov_course *c, ric_error *error) {
@@ -68,8 +57,7 @@ void lyapunov_course_clear(lyapunov_course *c) {
 }
 
 void lyapunov_course_restart(lyapunov_course *c) {
-  scatter(c->vectors, c->size * c->count);
-  orthonormal_make(&c->work, c->vectors, c->growth);
+  orthonormal_scatter(&c->work, c->vectors, c->growth);
   c->stride = c->options.interval / 64;
   c->begin = -INFINITY;
   lyapunov_course_forget(c);

@@ -86,7 +86,7 @@ static ric_status allocate(ric_map_runner *r, size_t size, ric_error *error) {
   return RIC_OK;
 }
 
-/* Numbers with no pattern, always the same ones, made orthonormal. */
+/* In which tangent vectors set out, one vector after another. */
 static ric_status set_directions(ric_map_runner *r, ric_error *error) {
   size_t size = r->block.size, count = r->options.exponents;
   orthonormal_work work = {0};
@@ -96,12 +96,7 @@ static ric_status set_directions(ric_map_runner *r, ric_error *error) {
   ric_status status = x ? orthonormal_init(&work, size, count, error)
                         : ric_fail(error, RIC_ENOMEM, "no memory for %zu tangent vectors", count);
   if (status == RIC_OK) {
-    uint64_t state = 1;
-    for (size_t i = 0; i < size * count; i++) {
-      state = state * 6364136223846793005u + 1442695040888963407u;
-      x[i] = (double)(state >> 11) / 0x1p52 - 1;
-    }
-    orthonormal_make(&work, x, x + size * count);
+    orthonormal_scatter(&work, x, x + size * count);
     for (size_t k = 0; k < count; k++)
       for (size_t i = 0; i < size; i++)
         r->directions[k * size + i] = x[i * count + k];

@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdbool.h>
+#include <stdint.h>
 
 #include <gsl/gsl_blas.h>
 #include <gsl/gsl_linalg.h>
@@ -51,4 +52,13 @@ void orthonormal_make(orthonormal_work *w, double *x, double *growth) {
     growth[k] = gone ? -INFINITY : log(left);
     take_column(w, k, gone, &vectors.matrix);
   }
+}
+
+void orthonormal_scatter(orthonormal_work *w, double *x, double *growth) {
+  uint64_t state = 1; /* of a linear congruence */
+  for (size_t i = 0; i < w->factors->size1 * w->factors->size2; i++) {
+    state = state * 6364136223846793005u + 1442695040888963407u;
+    x[i] = (double)(state >> 11) / 0x1p52 - 1;
+  }
+  orthonormal_make(w, x, growth);
 }

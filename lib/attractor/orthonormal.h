@@ -24,4 +24,9 @@ void orthonormal_clear(orthonormal_work *work);
  *  @param growth  [count] set to the logarithms of the moduli of R's diagonal, x = Q R */
 void orthonormal_make(orthonormal_work *work, double *x, double *growth);
 
+/** Sets x to orthonormal vectors with no pattern, always the same ones: vectors that lie along the axes would miss for
+ *  long what grows elsewhere.
+ *  @param growth  [count] overwritten */
+void orthonormal_scatter(orthonormal_work *work, double *x, double *growth);
+
 #endif

@@ -15,7 +15,7 @@ from program import trajectory, wait_until, write
 # Files grow until a limit instead of a full disk. The shared memory of MPI would meet it first, and below some 5 MB the
 # files through which mpirun and its ranks find each other.
 NO_SHARED_MEMORY = ("--mca", "btl", "tcp,self", "--mca", "osc", "^sm")
-SMALL, MIDDLE = 8 << 20, 24 << 20  # less than the checkpoint of a rank; more than that, less than the result
+SMALL, MIDDLE = 8 << 20, 20 << 20  # less than the checkpoint of a rank; more than that, less than the result
 WIDE = study(particles=400, at_start="[7]", sweep=sweep(4000))  # 6.7 kB a task: 27 MB in all
 SLOW = study(particles=100000, at_start="[7]", orbit="states: false", sweep=sweep(500))  # some 10 ms a task
 # Rows of 700 bytes with some 20 MB of impacts behind them.
