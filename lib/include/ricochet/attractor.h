@@ -21,6 +21,8 @@
 #include "grazing_map.h"
 #include "status.h"
 
+RIC_BEGIN_DECLARATIONS
+
 typedef struct ric_attractor_options {
   size_t transient;    /* iterates left out, default 9000 */
   size_t keep;         /* iterates stored, default 1000; 0: none */
@@ -123,5 +125,7 @@ RIC_API void ric_map_runner_destroy(ric_map_runner **runner);
  *           RIC_ESTOPPED */
 RIC_API ric_status ric_map_runner_run(ric_map_runner *runner, size_t count, const ric_grazing_map *const *maps,
                                       const double *d, ric_attractor *attractors, ric_error *error);
+
+RIC_END_DECLARATIONS
 
 #endif

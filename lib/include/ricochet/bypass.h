@@ -30,6 +30,8 @@
 
 #include "trajectory.h"
 
+RIC_BEGIN_DECLARATIONS
+
 /** What a state looks like beside grazing. */
 typedef struct ric_grazing_local {
   size_t numbers; /* n + m */
@@ -108,5 +110,7 @@ RIC_API ric_status ric_bypass_leading(ric_bypass *bypass, const ric_grazing_loca
  *  @param at_grazing  its coefficients  @param x  the grazing state  @returns as ric_bypass_map. */
 RIC_API ric_status ric_bypass_second(ric_bypass *bypass, const ric_grazing_local *at_grazing, double t, const double *x,
                                      double *kappa, ric_error *error);
+
+RIC_END_DECLARATIONS
 
 #endif

@@ -21,6 +21,8 @@
 
 #include "status.h"
 
+RIC_BEGIN_DECLARATIONS
+
 typedef enum ric_ends { RIC_ENDS_PERIODIC, RIC_ENDS_FIXED, RIC_ENDS_FREE } ric_ends;
 
 /** A chain. Plain data; ric_chain_check says whether it makes sense. */
@@ -68,5 +70,7 @@ RIC_API double ric_dispersion(double gamma, double wave_number);
 /** Coupling at which the out-of-phase mode p = pi has the period T, (13): ((2 pi / T)^2 - 1) / 4. The first resonance
  * of even rings; other ends and odd rings resonate slightly later. Negative for T > 2 pi. */
 RIC_API double ric_gamma_c(double period);
+
+RIC_END_DECLARATIONS
 
 #endif

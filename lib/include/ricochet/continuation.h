@@ -23,6 +23,8 @@
 
 #include "status.h"
 
+RIC_BEGIN_DECLARATIONS
+
 /** The equations. Callbacks return RIC_OK; RIC_ENUMERIC when there is no value here, so that a shorter step is tried;
  *  any other status ends the continuation with it. They may be asked a step beyond the bounds of p, where the curve may
  *  bend back: RIC_ENUMERIC there is in order. */
@@ -148,5 +150,7 @@ RIC_API ric_status ric_curve_solve(ric_curve *curve, double *u, double p, int *i
  *  @returns RIC_ENUMERIC when the point is no simple branch point. */
 RIC_API ric_status ric_curve_switch(ric_curve *curve, const double *u, double p, const double *tangent, double *other,
                                     ric_error *error);
+
+RIC_END_DECLARATIONS
 
 #endif

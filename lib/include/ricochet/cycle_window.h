@@ -16,6 +16,8 @@
 
 #include "attractor.h"
 
+RIC_BEGIN_DECLARATIONS
+
 /** Maps along a parameter. */
 typedef struct ric_map_line {
   size_t size;
@@ -60,5 +62,7 @@ RIC_API ric_status ric_cycle_find(const ric_map_line *line, double p, size_t per
 RIC_API ric_status ric_cycle_window_find(const ric_map_line *line, double p, size_t period, double low, double high,
                                          double step, double *z, ric_poll poll, ric_cycle_window *window,
                                          ric_error *error);
+
+RIC_END_DECLARATIONS
 
 #endif

@@ -19,6 +19,8 @@
 
 #include "export.h"
 
+RIC_BEGIN_DECLARATIONS
+
 #define RIC_EVENT_LIST(X)                                                                                              \
   X(RIC_EVENT_TRANSVERSAL, "transversal")                                                                              \
   X(RIC_EVENT_GRAZING, "grazing")                                                                                      \
@@ -58,5 +60,7 @@ typedef struct ric_event {
 static inline int ric_event_jumps(const ric_event *event) {
   return event->impulse != 0 && event->kind <= RIC_EVENT_CHATTER;
 }
+
+RIC_END_DECLARATIONS
 
 #endif

@@ -30,6 +30,8 @@
 #include "continuation.h"
 #include "shooting.h"
 
+RIC_BEGIN_DECLARATIONS
+
 /** What is continued. */
 typedef struct ric_family_problem {
   ric_system *system; /* borrowed; `set` changes its numbers. Several families may share it, one at a time: also
@@ -185,5 +187,7 @@ RIC_API ric_status ric_family_trace(ric_family *family, const ric_family_point *
                                     const ric_family_curve_tests *tests,
                                     int (*seen)(const ric_family_curve_point *point, void *user), void *user,
                                     ric_curve_run *run, ric_error *error);
+
+RIC_END_DECLARATIONS
 
 #endif

@@ -22,6 +22,8 @@
 #include "segment.h"
 #include "system.h"
 
+RIC_BEGIN_DECLARATIONS
+
 typedef enum ric_flow_method {
   RIC_FLOW_AUTO,   /* taylor where there is one, else cvodes */
   RIC_FLOW_TAYLOR, /* lattices and M-C-K systems */
@@ -93,5 +95,7 @@ typedef struct ric_flow_counts {
   unsigned long long starts;
 } ric_flow_counts;
 RIC_API ric_flow_counts ric_flow_counted(const ric_flow *flow);
+
+RIC_END_DECLARATIONS
 
 #endif

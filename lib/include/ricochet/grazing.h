@@ -20,6 +20,8 @@
 #include "family.h"
 #include "grazing_criterion.h"
 
+RIC_BEGIN_DECLARATIONS
+
 /** A grazing periodic motion. Storage of the caller: ric_grazing_init, ric_grazing_clear. */
 typedef struct ric_grazing {
   double parameter, second; /* the second one of families of two; else without meaning */
@@ -113,5 +115,7 @@ RIC_API ric_status ric_grazing_trace(ric_family *family, const ric_grazing *from
                                      void *user, ric_curve_run *run, ric_error *error);
 
 enum { RIC_GRAZING_CURVE_COEFFICIENTS = 64 };
+
+RIC_END_DECLARATIONS
 
 #endif

@@ -29,6 +29,8 @@
 
 #include "grazing_map.h"
 
+RIC_BEGIN_DECLARATIONS
+
 #define RIC_GRAZING_VERDICT_LIST(X)                                                                                    \
   X(RIC_GRAZING_CONTINUOUS, "continuous")                                                                              \
   X(RIC_GRAZING_DISCONTINUOUS, "discontinuous")                                                                        \
@@ -103,5 +105,7 @@ RIC_API ric_status ric_grazing_criterion_find(const ric_grazing_map *map, const 
  *  @returns RIC_EINVAL unless the verdict is continuous, n >= 2 and s is finite and positive. */
 RIC_API ric_status ric_grazing_predict_window(const ric_grazing_criterion *criterion, double stretch, size_t period,
                                               double *border, double *flip, ric_error *error);
+
+RIC_END_DECLARATIONS
 
 #endif

@@ -27,6 +27,8 @@
 
 #include "multipliers.h"
 
+RIC_BEGIN_DECLARATIONS
+
 /** Coefficients of the map. Storage of the caller: ric_grazing_map_init, ric_grazing_map_clear, which gives back the
  * arrays: they are filled, by him or by ric_grazing_section, and not put in the place of others. */
 typedef struct ric_grazing_map {
@@ -150,5 +152,7 @@ typedef struct ric_grazing_window {
  *  @returns as ric_grazing_cycle_at; RIC_ENUMERIC where I + L^n is singular, too */
 RIC_API ric_status ric_grazing_window_find(const ric_grazing_map *map, size_t period, ric_grazing_window *window,
                                            ric_error *error);
+
+RIC_END_DECLARATIONS
 
 #endif

@@ -18,6 +18,8 @@
 #include "orbit.h"
 #include "system.h"
 
+RIC_BEGIN_DECLARATIONS
+
 /** The modes of a system and the workspace of its orbits: a call for an orbit or a state allocates nothing. Not to be
  *  shared between threads. */
 typedef struct ric_impact_modes ric_impact_modes;
@@ -96,5 +98,7 @@ typedef struct ric_impact_interval {
 RIC_API ric_status ric_impact_modes_intervals(ric_impact_modes *modes, double low, double high, size_t samples,
                                               int (*seen)(const ric_impact_interval *interval, void *user), void *user,
                                               ric_error *error);
+
+RIC_END_DECLARATIONS
 
 #endif

@@ -17,6 +17,8 @@
 
 #include "chain.h"
 
+RIC_BEGIN_DECLARATIONS
+
 typedef struct ric_spring {
   double linear, quadratic, cubic; /* force at extension x: linear x + quadratic x^2 + cubic x^3 */
   double damping;                  /* force per rate of extension, >= 0 */
@@ -66,5 +68,7 @@ RIC_API double ric_lattice_energy(const ric_lattice *lattice, const double *q, c
 
 /** An upper bound of the frequencies of the linear part (Gershgorin), > 0 or 0 without springs. */
 RIC_API double ric_lattice_frequency_bound(const ric_lattice *lattice);
+
+RIC_END_DECLARATIONS
 
 #endif

@@ -13,6 +13,8 @@
 
 #include "trajectory.h"
 
+RIC_BEGIN_DECLARATIONS
+
 typedef struct ric_lyapunov_options {
   size_t count;    /* exponents wanted; 0 (default): all n + m */
   double interval; /* time from one report of the exponents to the next, > 1e-12 (1 + |end|); default 1. The vectors are
@@ -41,5 +43,7 @@ typedef struct ric_lyapunov {
  *  @returns RIC_EINVAL for options out of range, and as ric_trajectory_run; RIC_ENOMEM, RIC_ESTOPPED. */
 RIC_API ric_status ric_lyapunov_run(ric_trajectory *trajectory, double end, const ric_lyapunov_options *options,
                                     double *exponents, ric_lyapunov *lyapunov, ric_error *error);
+
+RIC_END_DECLARATIONS
 
 #endif

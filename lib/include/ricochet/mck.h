@@ -9,6 +9,8 @@
 
 #include "status.h"
 
+RIC_BEGIN_DECLARATIONS
+
 /** A square matrix, borrowed. `values` NULL: the zero matrix. `row_start` NULL: dense, row-major [n][n]. Otherwise
  *  compressed rows: the entries of row i are values[k] in column[k], row_start[i] <= k < row_start[i + 1]. */
 typedef struct ric_matrix {
@@ -28,5 +30,7 @@ typedef struct ric_mck {
  *  symmetric, a sparse one that is not diagonal. Whether a dense one is positive definite is seen when a system is made
  *  of it. */
 RIC_API ric_status ric_mck_check(const ric_mck *mck, ric_error *error);
+
+RIC_END_DECLARATIONS
 
 #endif

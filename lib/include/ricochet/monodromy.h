@@ -10,6 +10,8 @@
 #include "orbit.h"
 #include "trajectory.h"
 
+RIC_BEGIN_DECLARATIONS
+
 typedef struct ric_monodromy {
   ric_run_outcome outcome; /* of the run: the matrix is set when it is `completed` */
   char reason[256];        /* for people; "" when completed */
@@ -35,5 +37,7 @@ RIC_API ric_status ric_monodromy_find(const ric_system *system, double start, co
 RIC_API ric_status ric_orbit_monodromy(ric_orbit_solver *solver, const ric_chain *chain, const ric_orbit *orbit,
                                        const ric_trajectory_options *options, double *M, ric_monodromy *monodromy,
                                        ric_error *error);
+
+RIC_END_DECLARATIONS
 
 #endif

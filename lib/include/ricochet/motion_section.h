@@ -15,6 +15,8 @@
 #include "attractor.h"
 #include "trajectory.h"
 
+RIC_BEGIN_DECLARATIONS
+
 typedef enum ric_section_kind { RIC_SECTION_STROBE, RIC_SECTION_IMPACT } ric_section_kind;
 
 typedef struct ric_motion_section_options {
@@ -60,5 +62,7 @@ RIC_API ric_status ric_motion_section_set_period(ric_motion_section *section, do
  *           RIC_ESTOPPED. Runs with options as before take no memory */
 RIC_API ric_status ric_motion_section_run(ric_motion_section *section, const ric_attractor_options *options,
                                           ric_attractor *attractor, ric_error *error);
+
+RIC_END_DECLARATIONS
 
 #endif

@@ -8,6 +8,8 @@
 
 #include "family.h"
 
+RIC_BEGIN_DECLARATIONS
+
 typedef struct ric_motion_edge {
   ric_family_kind kind; /* what ends the window; RIC_FAMILY_REGULAR: nothing up to the bound that was given, or, where
                            the family could not be followed further, up to p: `reason` says why */
@@ -40,5 +42,7 @@ RIC_API ric_status ric_motion_window_find(const ric_family_problem *problem, siz
                                           double high, double t, const double *q, const double *u,
                                           const ric_family_options *options, ric_motion_window *window,
                                           ric_error *error);
+
+RIC_END_DECLARATIONS
 
 #endif

@@ -20,6 +20,8 @@
 
 #include "status.h"
 
+RIC_BEGIN_DECLARATIONS
+
 #define RIC_STABILITY_LIST(X)                                                                                          \
   X(RIC_STABLE, "stable")                                                                                              \
   X(RIC_UNSTABLE, "unstable")                                                                                          \
@@ -81,5 +83,7 @@ RIC_API ric_multiplier_options ric_multiplier_options_default(void);
 RIC_API ric_status ric_multipliers_of_matrix(const double *M, size_t dimension, size_t trivial,
                                              const ric_multiplier_options *options, ric_multipliers *multipliers,
                                              ric_error *error);
+
+RIC_END_DECLARATIONS
 
 #endif

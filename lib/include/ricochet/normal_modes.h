@@ -7,11 +7,15 @@
 
 #include "system.h"
 
+RIC_BEGIN_DECLARATIONS
+
 /** Modes of a lattice or M-C-K system; damping, forcing, nonlinear terms and obstacles are left aside.
  *  @param frequency  [n], set: angular, rising; 0 of modes without stiffness
  *  @param shape  [n][n], set: row j is phi_j; the first of its largest components is positive
  *  @returns RIC_EINVAL for user systems and for stiffness matrices that are not symmetric; RIC_ENUMERIC where a w_j^2
  * is negative beyond rounding, with its value, and where numbers overflow; RIC_ENOMEM. Nothing is set then. */
 RIC_API ric_status ric_normal_modes(const ric_system *system, double *frequency, double *shape, ric_error *error);
+
+RIC_END_DECLARATIONS
 
 #endif

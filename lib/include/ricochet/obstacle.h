@@ -14,6 +14,8 @@
 
 #include "status.h"
 
+RIC_BEGIN_DECLARATIONS
+
 typedef struct ric_obstacle {
   size_t coordinate;
   int side;           /* +1: floor, -1: wall */
@@ -24,12 +26,14 @@ typedef struct ric_obstacle {
 
 /** A rigid floor with restitution 1. */
 static inline ric_obstacle ric_obstacle_floor(size_t coordinate, double position) {
-  return (ric_obstacle){coordinate, +1, position, 1, INFINITY};
+  const ric_obstacle floor = {coordinate, +1, position, 1, INFINITY};
+  return floor;
 }
 
 /** A rigid wall with restitution 1. */
 static inline ric_obstacle ric_obstacle_wall(size_t coordinate, double position) {
-  return (ric_obstacle){coordinate, -1, position, 1, INFINITY};
+  const ric_obstacle wall = {coordinate, -1, position, 1, INFINITY};
+  return wall;
 }
 
 /** Gap h of a coordinate's value q over the obstacle. */
@@ -41,5 +45,7 @@ static inline double ric_obstacle_gap(const ric_obstacle *obstacle, double q) {
  *  @returns RIC_EINVAL naming the first obstacle and field that is out of range. */
 RIC_API ric_status ric_obstacles_check(const ric_obstacle *obstacles, size_t count, size_t coordinates,
                                        ric_error *error);
+
+RIC_END_DECLARATIONS
 
 #endif

@@ -33,6 +33,8 @@
 #include "resonance.h"
 #include "system.h"
 
+RIC_BEGIN_DECLARATIONS
+
 #define RIC_OUTCOME_LIST(X)                                                                                            \
   X(RIC_ADMISSIBLE, "admissible")                                                                                      \
   X(RIC_INADMISSIBLE, "inadmissible")                                                                                  \
@@ -148,5 +150,7 @@ RIC_API ric_status ric_orbit_singular_points(ric_orbit_solver *solver, const ric
                                              const ric_pattern *pattern, ric_along along, double period, double low,
                                              double high, double *points, size_t capacity, size_t *count,
                                              ric_error *error);
+
+RIC_END_DECLARATIONS
 
 #endif

@@ -26,6 +26,8 @@
 #include "multipliers.h"
 #include "orbit.h"
 
+RIC_BEGIN_DECLARATIONS
+
 typedef enum ric_multiplier_method {
   RIC_MULTIPLIERS_AUTO, /* reduced up to RIC_REDUCED_PARTICLES, determinant beyond */
   RIC_MULTIPLIERS_REDUCED,
@@ -99,5 +101,7 @@ RIC_API ric_status ric_orbit_critical_points(ric_orbit_solver *solver, const ric
                                              const ric_pattern *pattern, ric_along along, double period, double low,
                                              double high, size_t points, ric_critical *found, size_t capacity,
                                              size_t *count, ric_error *error);
+
+RIC_END_DECLARATIONS
 
 #endif

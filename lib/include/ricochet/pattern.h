@@ -12,6 +12,8 @@
 
 #include "chain.h"
 
+RIC_BEGIN_DECLARATIONS
+
 typedef enum ric_role { RIC_ROLE_FREE, RIC_ROLE_START, RIC_ROLE_HALF } ric_role;
 
 typedef struct ric_pattern ric_pattern;
@@ -52,5 +54,7 @@ RIC_API ric_status ric_pattern_reduce(const ric_pattern *pattern, ric_ends ends,
 
 /** Whether two patterns give every particle the same role. */
 RIC_API bool ric_pattern_equal(const ric_pattern *a, const ric_pattern *b);
+
+RIC_END_DECLARATIONS
 
 #endif

@@ -10,6 +10,8 @@
 
 #include "export.h"
 
+RIC_BEGIN_DECLARATIONS
+
 enum { RIC_POLY_DEGREE = 40 };
 
 /** Value at x; `slope`, when not NULL, is set to the derivative. */
@@ -43,5 +45,7 @@ RIC_API int ric_poly_first_root(const double *c, int degree, double *at);
 
 /** Whether the polynomial is positive on the whole of [0, 1]: ric_poly_first_root without the root. */
 RIC_API int ric_poly_is_positive(const double *c, int degree);
+
+RIC_END_DECLARATIONS
 
 #endif

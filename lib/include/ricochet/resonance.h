@@ -9,6 +9,8 @@
 
 #include "chain.h"
 
+RIC_BEGIN_DECLARATIONS
+
 enum { RIC_MOST_HARMONICS = 1000000 /* oscillations per period beyond which nothing is computed */ };
 
 /** The parameter that varies. */
@@ -36,5 +38,7 @@ RIC_API ric_status ric_chain_resonances(const ric_chain *chain, ric_along along,
 /** First resonance along gamma at a period T < 2 pi: the mode of largest wave number, harmonic 1. The gamma_c of this
  *  chain; NaN when there is none (one particle on a ring, T >= 2 pi). */
 RIC_API double ric_chain_first_resonance(const ric_chain *chain, double period);
+
+RIC_END_DECLARATIONS
 
 #endif

@@ -25,6 +25,8 @@
 
 #include "shooting.h"
 
+RIC_BEGIN_DECLARATIONS
+
 enum { RIC_RITZ_MOST = 300 /* functions: beyond it there is no rule with enough points */ };
 
 typedef struct ric_ritz_options {
@@ -109,5 +111,7 @@ RIC_API double ric_ritz_defect(ric_ritz *ritz, const double *c, double period);
  *  @returns as ric_ritz_fit. */
 RIC_API ric_status ric_ritz_error(ric_ritz *ritz, const double *c, double period, ric_shooting *shooting,
                                   const double *z, double *error_q, double *error_v, ric_error *error);
+
+RIC_END_DECLARATIONS
 
 #endif

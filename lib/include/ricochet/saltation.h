@@ -24,6 +24,8 @@
 
 #include "system.h"
 
+RIC_BEGIN_DECLARATIONS
+
 #define RIC_SALTATION_LIST(X)                                                                                          \
   X(RIC_SALTATION_DIFFERENTIABLE, "differentiable")                                                                    \
   X(RIC_SALTATION_GRAZING, "grazing")                                                                                  \
@@ -52,5 +54,7 @@ RIC_API const char *ric_saltation_name(ric_saltation_kind kind);
 RIC_API ric_status ric_saltation_find(const ric_system *system, double t, const double *q, const double *u,
                                       const size_t *obstacles, size_t count, double grazing_tol, double *S,
                                       double *S_reverse, ric_saltation_kind *kind, ric_error *error);
+
+RIC_END_DECLARATIONS
 
 #endif

@@ -12,6 +12,8 @@
 
 #include "polynomial.h"
 
+RIC_BEGIN_DECLARATIONS
+
 typedef struct ric_segment {
   size_t first;       /* particle of coordinate 0 */
   size_t coordinates; /* number of coordinates */
@@ -32,5 +34,7 @@ RIC_API void ric_segment_gap(const ric_segment *segment, size_t coordinate, doub
 
 /** Bounds [coordinates] of every coordinate over the segment, from the coefficients; cheap. `upper` may be NULL. */
 RIC_API void ric_segment_bounds(const ric_segment *segment, double *lower, double *upper);
+
+RIC_END_DECLARATIONS
 
 #endif

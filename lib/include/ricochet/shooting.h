@@ -32,6 +32,8 @@
 #include "orbit.h"
 #include "trajectory.h"
 
+RIC_BEGIN_DECLARATIONS
+
 typedef enum ric_motion_kind {
   RIC_MOTION_EVEN,
   RIC_MOTION_FORCED,
@@ -148,5 +150,7 @@ RIC_API ric_status ric_shooting_multipliers(ric_shooting *shooting, const double
  * ric_shooting_residual. */
 RIC_API ric_status ric_shooting_transfer(ric_shooting *shooting, const double *z, double given, double from, double to,
                                          double *x, double *transfer, ric_error *error);
+
+RIC_END_DECLARATIONS
 
 #endif

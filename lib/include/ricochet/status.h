@@ -11,6 +11,8 @@
 
 #include "export.h"
 
+RIC_BEGIN_DECLARATIONS
+
 #define RIC_STATUS_LIST(X)                                                                                             \
   X(RIC_OK, "done")                                                                                                    \
   X(RIC_EINVAL, "invalid argument")                                                                                    \
@@ -62,5 +64,7 @@ typedef struct ric_poll {
 static inline int ric_poll_stops(ric_poll poll) {
   return poll.call != NULL && poll.call(poll.user) != 0;
 }
+
+RIC_END_DECLARATIONS
 
 #endif

@@ -13,6 +13,8 @@
 #include "obstacle.h"
 #include "user_system.h"
 
+RIC_BEGIN_DECLARATIONS
+
 typedef struct ric_system ric_system;
 
 /** Systems from their models. All data are copied; callbacks and their `user` are borrowed. User systems keep their
@@ -68,5 +70,7 @@ RIC_API double ric_system_energy(const ric_system *system, double t, const doubl
  *           definite. */
 RIC_API ric_status ric_system_rate(const ric_system *system, double t, const double *q, const double *u, double *q_rate,
                                    double *u_rate, ric_error *error);
+
+RIC_END_DECLARATIONS
 
 #endif

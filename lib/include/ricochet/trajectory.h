@@ -16,6 +16,8 @@
 #include "event.h"
 #include "flow.h"
 
+RIC_BEGIN_DECLARATIONS
+
 #define RIC_RUN_OUTCOME_LIST(X)                                                                                        \
   X(RIC_RUN_COMPLETED, "completed")     /* reached the end */                                                          \
   X(RIC_RUN_EVENT_LIMIT, "event_limit") /* events at more times per unit of time than allowed */                       \
@@ -138,5 +140,7 @@ RIC_API int ric_sampler_segment(const ric_segment *piece, double end, void *samp
 
 /** Fills the remaining times that are not later than the trajectory's own with its state; call it after the run. */
 RIC_API void ric_sampler_finish(ric_sampler *sampler, const ric_trajectory *trajectory);
+
+RIC_END_DECLARATIONS
 
 #endif

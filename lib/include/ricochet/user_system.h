@@ -27,6 +27,8 @@
 
 #include "status.h"
 
+RIC_BEGIN_DECLARATIONS
+
 typedef struct ric_mechanical {
   size_t coordinates; /* n >= 1 */
   size_t speeds;      /* 1 <= m <= n */
@@ -62,5 +64,7 @@ typedef struct ric_first_order {
   int (*energy)(double t, const double *x, double *energy, void *user);
   void *user;
 } ric_first_order;
+
+RIC_END_DECLARATIONS
 
 #endif

@@ -11,6 +11,8 @@
 #include "orbit.h"
 #include "trajectory.h"
 
+RIC_BEGIN_DECLARATIONS
+
 #define RIC_VERIFICATION_LIST(X)                                                                                       \
   X(RIC_VERIFIED, "verified")                                                                                          \
   X(RIC_NOT_CLOSED, "not_closed")                                                                                      \
@@ -67,5 +69,7 @@ RIC_API ric_status ric_verify(const ric_system *system, double start, const doub
 RIC_API ric_status ric_orbit_verify(ric_orbit_solver *solver, const ric_chain *chain, const ric_pattern *pattern,
                                     const ric_orbit *orbit, const ric_verify_options *options,
                                     ric_verification *verification, ric_error *error);
+
+RIC_END_DECLARATIONS
 
 #endif
