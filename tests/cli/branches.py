@@ -1,9 +1,10 @@
 """What tests of branches share: studies, running them, reading their results."""
 
+import os
 import signal
 
 import h5py
-from program import STOPPED, USAGE, assert_same, names, run_attributes, tasks_in, wait_until, words_of, write
+from program import DONE, FILES, STOPPED, USAGE, assert_same, names, run_attributes, tasks_in, wait_until, words_of, write
 
 BASE = """kind: branch
 title: a ring of six
@@ -58,8 +59,8 @@ def refuse(ricochet, folder, cases, base=BASE):
         assert names(folder) == ["s.yaml"]
 
 
-def _stop(ricochet, folder, text, how):
-    write(folder, "s.yaml", text)
+def _stop(ricochet, folder, how):
+    """Stops a run when it has some tasks done. A fast one may come to its end before."""
     process = ricochet.start_run("s.yaml", cwd=folder, ranks=2)
     wait_until(lambda: tasks_in(folder / "s.h5.ckpt") >= 4 or (folder / "s.h5").exists(), "records")
     if process.poll() is None:
@@ -67,9 +68,19 @@ def _stop(ricochet, folder, text, how):
     return ricochet.end(process)
 
 
+def _leave_half(ricochet, folder):
+    """Leaves a checkpoint with about half of what a run records, which ends in a torn record."""
+    (folder / "s.h5.tmp").mkdir()  # the result cannot be written, so the checkpoint stays
+    ricochet.run("s.yaml", cwd=folder).expect(FILES)
+    (folder / "s.h5.tmp").rmdir()
+    (part,) = (folder / "s.h5.ckpt").glob("part-*")
+    os.truncate(part, part.stat().st_size // 2)
+    assert tasks_in(folder / "s.h5.ckpt") > 0
+
+
 def equal_for_all_ranks_and_after_stops(ricochet, folder, text, ranks):
-    """Runs a study of 5 tasks or more without mpirun, with numbers of ranks, and stopped and resumed with the last of
-    them. Returns the first result."""
+    """Runs a study of 5 tasks or more without mpirun, with numbers of ranks, and resumed with the last of them after a
+    stop, a kill, and half of a checkpoint. Returns the first result."""
     paths = []
     for count in (0, *ranks):
         own = folder / str(count)
@@ -78,14 +89,18 @@ def equal_for_all_ranks_and_after_stops(ricochet, folder, text, ranks):
         ricochet.run("s.yaml", cwd=own, ranks=count).expect_done()
         paths.append(own / "s.h5")
         assert_same(paths[0], paths[-1])
-    for name, how in (("stopped", signal.SIGUSR1), ("killed", signal.SIGKILL)):
+    for name in ("stopped", "killed", "half"):
         own = folder / name
         own.mkdir()
-        result = _stop(ricochet, own, text, how)
-        if how == signal.SIGUSR1:
-            result.expect(STOPPED)
-        done = tasks_in(own / "s.h5.ckpt")
+        write(own, "s.yaml", text)
+        if name == "stopped":
+            assert _stop(ricochet, own, signal.SIGUSR1).code in (STOPPED, DONE)
+        elif name == "killed":
+            _stop(ricochet, own, signal.SIGKILL)
+        else:
+            _leave_half(ricochet, own)
+        finished, done = (own / "s.h5").exists(), tasks_in(own / "s.h5.ckpt")
         ricochet.run("s.yaml", "--resume", cwd=own, ranks=ranks[-1]).expect_done()
-        assert how == signal.SIGKILL or run_attributes(own / "s.h5")["tasks_resumed"] == done
+        assert name == "killed" or finished or run_attributes(own / "s.h5")["tasks_resumed"] == done
         assert_same(paths[0], own / "s.h5", ("heap_checksums",))  # addresses, which move with the command line
     return paths[0]

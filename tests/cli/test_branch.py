@@ -9,7 +9,7 @@ import numpy as np
 import program
 import xarray
 from branches import BASE, WALL, equal_for_all_ranks_and_after_stops, read, refuse, rows, run
-from program import STOPPED, USAGE, study, sweep, test, words_of, write
+from program import STOPPED, USAGE, study, words_of, write
 
 DUFFING = """kind: branch
 model: {type: chain, particles: 1, ends: free, gamma: 0, floor: null, cubic: 1, damping: 0.1, force: 0.3}
@@ -26,8 +26,7 @@ branch: {parameter: model.hertz, from: 100, to: 1e6, scale: log}
 # --- refusals ---
 
 
-@test
-def parameters_are_refused_by_name_with_the_nearest_one(ricochet, folder):
+def test_parameters_are_refused_by_name_with_the_nearest_one(ricochet, folder):
     refuse(ricochet, folder, [
         ("model.gamma", "model.gama", 13, "unknown branch parameter 'model.gama'; did you mean 'model.gamma'?"),
         ("model.gamma", "model.colour", 13, "unknown branch parameter 'model.colour', expected a number of model"),
@@ -44,8 +43,7 @@ def parameters_are_refused_by_name_with_the_nearest_one(ricochet, folder):
     ])
 
 
-@test
-def ranges_and_steps_are_refused_by_place_and_value(ricochet, folder):
+def test_ranges_and_steps_are_refused_by_place_and_value(ricochet, folder):
     to = "to: 0.15\n"
     refuse(ricochet, folder, [
         ("to: 0.15", "to: 0", 15, "branch.to = 0 is where the branch starts, expected another value"),
@@ -67,8 +65,7 @@ def ranges_and_steps_are_refused_by_place_and_value(ricochet, folder):
     ])
 
 
-@test
-def motions_that_do_not_fit_the_model_are_refused(ricochet, folder):
+def test_motions_that_do_not_fit_the_model_are_refused(ricochet, folder):
     period = "  period: 1.5 pi\n"
     refuse(ricochet, folder, [
         ("hertz: null", "damping: 0.1", 8, "model.damping = 0.1, but orbit.motion: even needs model.damping = 0"),
@@ -92,8 +89,7 @@ def motions_that_do_not_fit_the_model_are_refused(ricochet, folder):
     ])
 
 
-@test
-def keys_of_branches_belong_to_them(ricochet, folder):
+def test_keys_of_branches_belong_to_them(ricochet, folder):
     write(folder, "s.yaml", study() + "branch: {from: 1}\n")
     ricochet("check", "s.yaml", cwd=folder).expect_refused(
         USAGE, "s.yaml:4: branch.from is a key of kind: branch or grazing or diagram, and this is kind: orbits")
@@ -106,8 +102,7 @@ def keys_of_branches_belong_to_them(ricochet, folder):
 # --- what they find ---
 
 
-@test
-def points_are_the_orbits_of_the_pattern(ricochet, folder):
+def test_points_are_the_orbits_of_the_pattern(ricochet, folder):
     """Solved for themselves, by impulse response."""
     found = read(run(ricochet, folder, BASE))
     assert found["outcome"] == ["bound"] and found["point_parameter"][[0, -1]].tolist() == [0, 0.15]
@@ -123,8 +118,7 @@ def points_are_the_orbits_of_the_pattern(ricochet, folder):
     assert found["point_residual"].max() < 1e-9
 
 
-@test
-def a_stiff_floor_is_nearly_a_rigid_one(ricochet, folder):
+def test_a_stiff_floor_is_nearly_a_rigid_one(ricochet, folder):
     found = read(run(ricochet, folder, HERTZ))
     assert found["outcome"] == ["bound"] and found["point_parameter"][[0, -1]].tolist() == [100, 1e6]
     with h5py.File(run(ricochet, folder, study(6, at_start="[3]"), name="o")) as file:
@@ -133,8 +127,7 @@ def a_stiff_floor_is_nearly_a_rigid_one(ricochet, folder):
     assert (np.diff(away) < 0).all() and away[-1] < 0.02 * rigid, away
 
 
-@test
-def a_driven_duffing_oscillator_has_two_folds(ricochet, folder):
+def test_a_driven_duffing_oscillator_has_two_folds(ricochet, folder):
     found = read(run(ricochet, folder, DUFFING))
     assert found["special_kind"] == ["fold", "fold"] and found["outcome"] == ["bound"]
     upper, lower = found["special_parameter"]
@@ -147,8 +140,7 @@ def a_driven_duffing_oscillator_has_two_folds(ricochet, folder):
     assert np.allclose(found["point_period"], 2 * np.pi / found["point_parameter"], rtol=1e-13)
 
 
-@test
-def an_oscillator_at_resonance_grazes_where_its_amplitude_says(ricochet, folder):
+def test_an_oscillator_at_resonance_grazes_where_its_amplitude_says(ricochet, folder):
     """Its amplitude is the force over the damping; it is crossed to the family with one impact."""
     found = read(run(ricochet, folder, WALL))
     grazing = found["special_kind"].index("grazing")
@@ -166,8 +158,7 @@ def an_oscillator_at_resonance_grazes_where_its_amplitude_says(ricochet, folder)
     assert len(impacts) > 5 and set(impacts) == {"admissible"}
 
 
-@test
-def histories_are_states_over_the_period(ricochet, folder):
+def test_histories_are_states_over_the_period(ricochet, folder):
     """Of the oscillator at resonance: the force over the damping, times the sine; after the impact where it hits."""
     path = run(ricochet, folder, WALL, "--set", "branch.samples=9")
     found = read(path)
@@ -182,8 +173,7 @@ def histories_are_states_over_the_period(ricochet, folder):
     assert np.allclose(v[~smooth][:, 0], -0.8 * v[~smooth][:, -1], atol=1e-9)
 
 
-@test
-def branches_go_one_way_or_the_other_and_by_natural_steps(ricochet, folder):
+def test_branches_go_one_way_or_the_other_and_by_natural_steps(ricochet, folder):
     text = DUFFING.replace("from: 0.5, to: 2.5", "from: 2.5, to: 0.5")
     found = read(run(ricochet, folder, text))
     assert found["special_kind"] == ["fold", "fold"] and found["point_parameter"][-1] == 0.5
@@ -192,16 +182,14 @@ def branches_go_one_way_or_the_other_and_by_natural_steps(ricochet, folder):
     assert found["outcome"] == ["not_converged"] and found["reason"][0] and found["point_parameter"].max() < 1.78
 
 
-@test
-def bounds_may_be_wider_than_the_way(ricochet, folder):
+def test_bounds_may_be_wider_than_the_way(ricochet, folder):
     text = BASE.replace("from: 0\n", "from: 0.05\n").replace("to: 0.15\n", "to: 0.1\n  low: 0\n  high: 0.15\n")
     assert read(run(ricochet, folder, text))["point_parameter"][[0, -1]].tolist() == [0.05, 0.15]
     found = read(run(ricochet, folder, text + "  points: 3\n", "--force"))
     assert found["outcome"] == ["points"] and found["points"].tolist() == [4]
 
 
-@test
-def periods_and_energies_can_be_followed(ricochet, folder):
+def test_periods_and_energies_can_be_followed(ricochet, folder):
     along_period = BASE.replace("model.gamma", "orbit.period").replace("gamma: 0\n", "gamma: 0.05\n")
     along_period = along_period.replace("from: 0\n  to: 0.15", "from: 1.5 pi\n  to: 5").replace("  period: 1.5 pi\n", "")
     found = read(run(ricochet, folder, along_period))
@@ -214,8 +202,7 @@ def periods_and_energies_can_be_followed(ricochet, folder):
     assert abs(found["point_period"][0] - 1.5 * np.pi) < 1e-8
 
 
-@test
-def breathers_begin_with_one_particle(ricochet, folder):
+def test_breathers_begin_with_one_particle(ricochet, folder):
     text = """kind: branch
 model: {type: chain, particles: 8, gamma: 0, floor: null, cubic: 1}
 orbit: {period: 4.5, excited: [2]}
@@ -237,8 +224,7 @@ GRID = HERTZ.replace("from: 100, to: 1e6, scale: log", "from: 1e3, to: 1e5, scal
     "sweep: {parameter: model.gamma, from: 0, to: 0.15, points: 24}\n")
 
 
-@test
-def a_branch_that_does_not_begin_is_a_row(ricochet, folder):
+def test_a_branch_that_does_not_begin_is_a_row(ricochet, folder):
     text = """kind: branch
 model: {type: chain, particles: 2, gamma: 0, floor: null, cubic: 1}
 orbit: {period: 4, excited: [0]}
@@ -256,8 +242,7 @@ sweep: {parameter: orbit.period, values: [4.5, 7, 5]}
     ricochet("show", path, "--verify", cwd=folder).expect_done()
 
 
-@test
-def groups_open_in_xarray_and_as_csv(ricochet, folder):
+def test_groups_open_in_xarray_and_as_csv(ricochet, folder):
     path = run(ricochet, folder, WALL)
     with xarray.open_dataset(path, engine="h5netcdf", group="branch") as opened:
         assert opened.point_energy.dims == ("point_row",) and opened.special_q.dims == ("special_row", "particle")
@@ -271,8 +256,7 @@ def groups_open_in_xarray_and_as_csv(ricochet, folder):
 # --- restarts ---
 
 
-@test
-def a_branch_goes_on_from_a_point_of_a_result(ricochet, folder):
+def test_a_branch_goes_on_from_a_point_of_a_result(ricochet, folder):
     """Of the family with an impact, backwards, down to its fold; the result says itself where it started."""
     path = run(ricochet, folder, WALL.replace("cross: true", "cross: true, states: true"))
     found = read(path)
@@ -292,8 +276,7 @@ def a_branch_goes_on_from_a_point_of_a_result(ricochet, folder):
     program.assert_same_data(again, own / "again.h5")
 
 
-@test
-def restarts_take_impacts_and_numbers_along(ricochet, folder):
+def test_restarts_take_impacts_and_numbers_along(ricochet, folder):
     """A point of a family along the coupling goes on along the period, of the task with that floor."""
     text = BASE.replace("at_start: [3]", "at_start: [0]\n  at_half: [3]").replace("to: 0.15\n", "to: 0.05\n  states: true\n")
     found = read(run(ricochet, folder, text + "sweep: {parameter: model.floor, values: [-1, -0.5]}\n"))
@@ -308,8 +291,7 @@ def restarts_take_impacts_and_numbers_along(ricochet, folder):
     assert abs(went["point_energy"][0] - energy) < 1e-12 and went["segment_impacts"].tolist() == [2]
 
 
-@test
-def restarts_that_cannot_be_are_refused(ricochet, folder):
+def test_restarts_that_cannot_be_are_refused(ricochet, folder):
     run(ricochet, folder, WALL)
     run(ricochet, folder, study(), name="o")
     text = WALL.replace("from: 0.05, ", "") + "restart: {file: s.h5, special: 0}\n"
@@ -335,8 +317,7 @@ def restarts_that_cannot_be_are_refused(ricochet, folder):
     ricochet("check", "k.yaml", cwd=folder).expect_refused(USAGE, "k.yaml:4: restart.file is a key of kind: branch")
 
 
-@test
-def impacts_double_their_period_again_and_again(ricochet, folder):
+def test_impacts_double_their_period_again_and_again(ricochet, folder):
     """The shipped study: q'' + q = cos w t over a floor at 0 with restitution 0.8."""
     text = (ricochet.studies / "impact_oscillator.yaml").read_text()
     found = read(run(ricochet, folder, text))
@@ -351,19 +332,13 @@ def impacts_double_their_period_again_and_again(ricochet, folder):
     assert set(stable[alone & (at < first[0])]) == {"stable"} and set(stable[alone & (at > first[0])]) == {"unstable"}
 
 
-@test
-def branches_are_equal_for_all_ranks_and_after_stops(ricochet, folder):
+def test_branches_are_equal_for_all_ranks_and_after_stops(ricochet, folder):
     equal_for_all_ranks_and_after_stops(ricochet, folder, GRID, (1, 3))
 
 
-@test
-def a_long_branch_stops_in_time(ricochet, folder):
+def test_a_long_branch_stops_in_time(ricochet, folder):
     text = BASE.replace("particles: 6", "particles: 100").replace("to: 0.15\n", "to: 0.15\n  step_most: 1e-5\n"
                                                                    "  points: 100000\n")
     write(folder, "s.yaml", text)
     result = ricochet.run("s.yaml", "--max-time", "1s", cwd=folder, ranks=2, limit=20)
     result.expect(STOPPED).expect_line("s.h5: ", "--max-time", "0 of 1 tasks", "--resume")
-
-
-if __name__ == "__main__":
-    program.main()

@@ -5,10 +5,9 @@ import io
 
 import h5py
 import numpy as np
-import program
 import xarray
 from branches import BASE, WALL, read, refuse, rows, run
-from program import USAGE, assert_same, study, test, write
+from program import USAGE, assert_same, study, write
 
 TRACE = """kind: branch
 model: {type: chain, particles: 1, ends: free, gamma: 0, floor: null, wall: 1, restitution: 0.8, damping: 0.1,
@@ -19,8 +18,7 @@ branch: {parameter: model.force, from: 0.05, to: 1, cross: true,
 """
 
 
-@test
-def curves_are_refused_by_place_and_value(ricochet, folder):
+def test_curves_are_refused_by_place_and_value(ricochet, folder):
     range_ = "low: 0.3, high: 3"
     refuse(ricochet, folder, [
         ("model.frequency,", "model.frequencie,", 6, "unknown trace parameter 'model.frequencie'; did you mean"),
@@ -70,8 +68,7 @@ def curve_of(found, kind, part, task=0):
     return picks[0], found["curve_end_outcome"][picks[1][0]]
 
 
-@test
-def the_grazing_curve_is_the_closed_form(ricochet, folder):
+def test_the_grazing_curve_is_the_closed_form(ricochet, folder):
     """x'' + c x' + x = A cos(w t) beside a wall at 1: A^2 = (1 - w^2)^2 + c^2 w^2."""
     path = run(ricochet, folder, TRACE)
     found = read(path)
@@ -95,8 +92,7 @@ def the_grazing_curve_is_the_closed_form(ricochet, folder):
         int(((found["curve_special"] == k) & (found["curve_part"] == p)).sum()) for k in (0, 1) for p in (0, 1)]
 
 
-@test
-def curves_of_folds_and_doublings_meet_the_points_of_other_branches(ricochet, folder):
+def test_curves_of_folds_and_doublings_meet_the_points_of_other_branches(ricochet, folder):
     """Each curve is found again by branches at other frequencies, on which it is a special point."""
     for name, kind, at, beside in (("doubling", "period_doubling", 0.8, 0.85), ("fold", "fold", 1, 1.2)):
         text = TRACE.replace("frequency: 0.8", f"frequency: {at}").replace("high: 3}", f"high: {beside}}}")
@@ -110,8 +106,7 @@ def curves_of_folds_and_doublings_meet_the_points_of_other_branches(ricochet, fo
     assert abs(found["special_parameter"][found["special_kind"].index("fold")] - 0.0999707536283) < 1e-10
 
 
-@test
-def a_branch_is_the_same_with_curves_and_without(ricochet, folder):
+def test_a_branch_is_the_same_with_curves_and_without(ricochet, folder):
     traced = read(run(ricochet, folder, TRACE))
     plain = read(run(ricochet, folder, TRACE, "--set", "branch.trace={}", name="plain"))
     assert {name for name in traced if name not in plain} == {name for name in traced if name.startswith("curve_")}
@@ -121,8 +116,7 @@ def a_branch_is_the_same_with_curves_and_without(ricochet, folder):
     assert traced["iterations"] > plain["iterations"]
 
 
-@test
-def curves_follow_the_kinds_and_end_where_the_study_says(ricochet, folder):
+def test_curves_follow_the_kinds_and_end_where_the_study_says(ricochet, folder):
     found = read(run(ricochet, folder, TRACE, "--set", "branch.trace.kinds=[period_doubling]", name="kinds"))
     assert [found["special_kind"][k] for k in set(found["curve_end_special"])] == ["period_doubling"]
     found = read(run(ricochet, folder, TRACE, "--set", "branch.trace.points=3", name="points"))
@@ -135,8 +129,7 @@ def curves_follow_the_kinds_and_end_where_the_study_says(ricochet, folder):
     assert len(lost["curve_special"]) == len(lost["curve_end_special"]) == 0 and lost["curve_offset"].tolist() == [0, 0]
 
 
-@test
-def curves_are_equal_for_all_ranks(ricochet, folder):
+def test_curves_are_equal_for_all_ranks(ricochet, folder):
     text = TRACE + "sweep: {parameter: model.damping, values: [0.05, 0.1, 0.15, 0.2]}\n"
     paths = []
     for ranks in (1, 2):
@@ -151,7 +144,3 @@ def curves_are_equal_for_all_ranks(ricochet, folder):
         curve, _ = curve_of(found, "grazing", 0, task)
         w = found["curve_second"][curve]
         assert len(w) > 10 and np.abs(found["curve_parameter"][curve] - np.hypot(1 - w**2, damping * w)).max() < 1e-8
-
-
-if __name__ == "__main__":
-    program.main()

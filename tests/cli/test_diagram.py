@@ -6,17 +6,15 @@ import io
 
 import h5py
 import numpy as np
-import program
 import xarray
 from branches import equal_for_all_ranks_and_after_stops, refuse, run
 from diagram_studies import MAP, LISTED, OSCILLATOR, BEYOND, swept, read, found_by, iterates, border, flip
-from program import STOPPED, USAGE, test, write
+from program import STOPPED, USAGE, write
 
 # --- refusals ---
 
 
-@test
-def keys_and_values_are_refused_by_place_and_value(ricochet, folder):
+def test_keys_and_values_are_refused_by_place_and_value(ricochet, folder):
     keep = "keep: 100"
     model = "is a key of model.type: chain or duffing_chain, and this is model.type: grazing_map"
     refuse(ricochet, folder, [
@@ -71,8 +69,7 @@ def keys_and_values_are_refused_by_place_and_value(ricochet, folder):
 # --- the example map of the source ---
 
 
-@test
-def iterates_are_those_of_the_printed_map(ricochet, folder):
+def test_iterates_are_those_of_the_printed_map(ricochet, folder):
     """Periodic ones and the first ones of chaotic ones, before rounding has grown."""
     text = swept(MAP.replace("keep: 100", "states: true, keep: 40, start: [0.02, -0.1, 0.3]"),
                  "iterate.transient, values: [0, 3, 500]", "model.d, values: [0.03, 0.01, 1.5e-4, 0, -0.1]")
@@ -88,8 +85,7 @@ def iterates_are_those_of_the_printed_map(ricochet, folder):
     assert (second["values"] == found["state"][:, :, 2]).all()
 
 
-@test
-def windows_and_chaos_lie_where_the_source_has_them(ricochet, folder):
+def test_windows_and_chaos_lie_where_the_source_has_them(ricochet, folder):
     values = [0.03, 0.0277, 0.0138, 0.009, 0.0044, 0.0042, 1.5e-4]
     found = found_by(ricochet, folder, swept(MAP.replace("keep: 100", "keep: 100, lyapunov: true").replace("2000", "9000"),
                                              f"model.d, values: {values}"))
@@ -104,15 +100,13 @@ def windows_and_chaos_lie_where_the_source_has_them(ricochet, folder):
     assert long["attractor_period"].tolist() == [0] and long["outcome"] == ["aperiodic"]
 
 
-@test
-def periods_beside_a_flip_are_not_doubled(ricochet, folder):
+def test_periods_beside_a_flip_are_not_doubled(ricochet, folder):
     """Attractors are approached there from both sides in turn: iterates come back after 8 long before after 4."""
     text = swept(MAP.replace("keep: 100", "keep: 0, measure: 10").replace("2000", "9000"), "model.d, from: 0.0282, to: 0.0286, points: 17")
     assert found_by(ricochet, folder, text)["attractor_period"].tolist() == 17 * [4]
 
 
-@test
-def exponents_are_those_of_the_closed_form(ricochet, folder):
+def test_exponents_are_those_of_the_closed_form(ricochet, folder):
     """z1 decouples, and the rest turns and shrinks by omega."""
     text = MAP.replace("d: 0.01", "d: 1.5e-4").replace("keep: 100", "keep: 10, measure: 100000, lyapunov: true, exponents: 3")
     found = found_by(ricochet, folder, text)
@@ -130,8 +124,7 @@ def exponents_are_those_of_the_closed_form(ricochet, folder):
     assert abs(cycle["lyapunov"][0] - np.log(slopes).mean()) < 1e-6 and "exponents" not in cycle
 
 
-@test
-def edges_of_windows_meet_the_closed_forms(ricochet, folder):
+def test_edges_of_windows_meet_the_closed_forms(ricochet, folder):
     text = MAP.replace("keep: 100", "keep: 0, measure: 100, windows: true").replace("2000", "9000")
     text = swept(text, "model.d, from: 1e-5, to: 0.02, points: 300, scale: log")
     for decay, turn in ((0.5, 0.3), (0.4, 0.1), (0.6, 0.2)):
@@ -152,8 +145,7 @@ def edges_of_windows_meet_the_closed_forms(ricochet, folder):
     assert abs(border(5, 0.5) - 1 / 72) < 1e-15 and abs(flip(4, 0.5) - 0.028) < 1e-15
 
 
-@test
-def no_window_follows_above_two_thirds(ricochet, folder):
+def test_no_window_follows_above_two_thirds(ricochet, folder):
     text = swept(MAP.replace("keep: 100", "keep: 0, measure: 1000, lyapunov: true, windows: true").replace("2000", "9000"),
                  "model.d, from: 1e-5, to: 1e-2, points: 120, scale: log")
     path = run(ricochet, folder, text, "--set", "model.lambda=0.7", "--set", "model.omega=0.15")
@@ -163,8 +155,7 @@ def no_window_follows_above_two_thirds(ricochet, folder):
     ricochet("show", path, cwd=folder).expect_done()
 
 
-@test
-def attractors_repeat_under_the_square_of_lambda(ricochet, folder):
+def test_attractors_repeat_under_the_square_of_lambda(ricochet, folder):
     """Periods rise by one and exponents per return stay, better so as d falls: the limit map."""
     d = np.geomspace(1e-6, 4e-6, 41)[:-1]
     text = MAP.replace("keep: 100", "keep: 20, measure: 1000").replace("2000", "20000")
@@ -184,8 +175,7 @@ def attractors_repeat_under_the_square_of_lambda(ricochet, folder):
 # --- two attractors ---
 
 
-@test
-def attractors_coexist_between_the_flip_and_the_next_border(ricochet, folder):
+def test_attractors_coexist_between_the_flip_and_the_next_border(ricochet, folder):
     """lambda below 1/4: period n comes up as far as its border, and goes down as far as its flip."""
     decay, turn = 0.1, 0.05
     text = MAP.replace("lambda: 0.5, omega: 0.3", f"lambda: {decay}, omega: {turn}").replace("keep: 100", "keep: 0, follow: true")
@@ -218,8 +208,7 @@ iterate: {transient: 1000, measure: 10, start: [0, 0, 0]}
 """
 
 
-@test
-def basins_say_which_attractor_every_start_comes_to(ricochet, folder):
+def test_basins_say_which_attractor_every_start_comes_to(ricochet, folder):
     text = swept(BASIN, "'iterate.start[1]', values: [-0.2, 0.3]", "'iterate.start[0]', from: -0.5, to: 0.5, points: 40")
     path = run(ricochet, folder, text)
     found = read(path, "basin")
@@ -239,8 +228,7 @@ def basins_say_which_attractor_every_start_comes_to(ricochet, folder):
     assert not {"values", "state", "lyapunov", "exponents"} & set(found) and found["outcome"] == 80 * ["periodic"]
 
 
-@test
-def starts_that_diverge_belong_to_no_attractor(ricochet, folder):
+def test_starts_that_diverge_belong_to_no_attractor(ricochet, folder):
     found = found_by(ricochet, folder, swept(BASIN.replace("lambda: 0.1", "lambda: 2"), "'iterate.start[0]', values: [0.5, 1, 2]"),
                      group="basin")
     assert found["outcome"] == 3 * ["diverged"] and (found["attractor"] == -1).all() and len(found["found_period"]) == 0
@@ -249,8 +237,7 @@ def starts_that_diverge_belong_to_no_attractor(ricochet, folder):
     assert b"1e+100" in mixed["reason"][1] and np.isnan(mixed["lowest"][1]).all()
 
 
-@test
-def a_few_starts_are_swept_and_given_as_one_number(ricochet, folder):
+def test_a_few_starts_are_swept_and_given_as_one_number(ricochet, folder):
     text = MAP.replace("keep: 100", "keep: 3, start: 0").replace("2000", "0")
     found = found_by(ricochet, folder, swept(text, "iterate.start, values: [0, 0.3]"))
     for task, start in enumerate((0, 0.3)):
@@ -260,8 +247,7 @@ def a_few_starts_are_swept_and_given_as_one_number(ricochet, folder):
 # --- other maps, other numbers ---
 
 
-@test
-def general_maps_give_the_bits_of_the_example(ricochet, folder):
+def test_general_maps_give_the_bits_of_the_example(ricochet, folder):
     """Also one of one number alone: z1 decouples."""
     line = "model.d, values: [0.03, 0.0277, 0.01, 1.5e-4, -1]"
     named = found_by(ricochet, folder, swept(MAP, line))
@@ -285,8 +271,7 @@ def general_maps_give_the_bits_of_the_example(ricochet, folder):
     ], LISTED)
 
 
-@test
-def numbers_of_the_map_and_of_the_run_are_swept(ricochet, folder):
+def test_numbers_of_the_map_and_of_the_run_are_swept(ricochet, folder):
     decays, turns = [0.4, 0.5], [0.1, 0.25]
     found = found_by(ricochet, folder, swept(MAP, f"model.lambda, values: {decays}", f"model.omega, values: {turns}"))
     for task, (decay, turn) in enumerate((a, b) for a in decays for b in turns):
@@ -300,8 +285,7 @@ def numbers_of_the_map_and_of_the_run_are_swept(ricochet, folder):
     assert np.allclose(short["impacts"], 0.2) and (short["values"] == short["values"][0]).all()
 
 
-@test
-def divergence_and_rest_are_outcomes(ricochet, folder):
+def test_divergence_and_rest_are_outcomes(ricochet, folder):
     found = found_by(ricochet, folder, swept(MAP.replace("keep: 100", "keep: 5, states: true"), "model.lambda, values: [0.5, 3, -0.5]"))
     assert found["outcome"] == ["periodic", "diverged", "diverged"]
     assert found["attractor_period"].tolist() == [5, 0, 0] and np.isnan(found["impacts"][1:]).all()
@@ -317,8 +301,7 @@ def divergence_and_rest_are_outcomes(ricochet, folder):
 # --- how they are stored ---
 
 
-@test
-def only_what_was_asked_for_is_there(ricochet, folder):
+def test_only_what_was_asked_for_is_there(ricochet, folder):
     bare = found_by(ricochet, folder, MAP.replace("keep: 100", "keep: 0, states: true"), name="bare")
     assert set(bare) == {"outcome", "reason", "attractor_period", "impacts", "end", "lowest"}
     full = found_by(ricochet, folder, MAP.replace("keep: 100", "keep: 7, states: true, lyapunov: true, exponents: 2"), name="full")
@@ -331,8 +314,7 @@ def only_what_was_asked_for_is_there(ricochet, folder):
             assert [axis[0].name for axis in file["diagram"][name].dims] == ["/" + a for a in axes], name
 
 
-@test
-def groups_open_in_xarray_and_as_csv(ricochet, folder):
+def test_groups_open_in_xarray_and_as_csv(ricochet, folder):
     text = swept(MAP.replace("keep: 100", "keep: 5, states: true, lyapunov: true, exponents: 3, windows: true"),
                  "model.lambda, values: [0.5, 0.4]", "model.d, from: 1e-3, to: 0.01, points: 30")
     diagram = run(ricochet, folder, text)
@@ -356,8 +338,7 @@ def groups_open_in_xarray_and_as_csv(ricochet, folder):
     assert [row["attractor"] for row in csv.DictReader(io.StringIO(out))] == ["0", "1", "0"]
 
 
-@test
-def cards_say_what_was_found_in_sentences(ricochet, folder):
+def test_cards_say_what_was_found_in_sentences(ricochet, folder):
     text = MAP.replace("keep: 100", "keep: 0, measure: 100, windows: true")
     path = run(ricochet, folder, swept(text, "model.d, values: [0.0277, 0.0135, 0.01, 0.005]"))
     out = ricochet("show", path, cwd=folder).expect_done().out
@@ -374,28 +355,24 @@ def cards_say_what_was_found_in_sentences(ricochet, folder):
 # --- tasks ---
 
 
-@test
-def results_are_equal_for_all_ranks_and_after_stops(ricochet, folder):
+def test_results_are_equal_for_all_ranks_and_after_stops(ricochet, folder):
     text = MAP.replace("keep: 100", "keep: 20, lyapunov: true, windows: true").replace("2000", "30000")
     equal_for_all_ranks_and_after_stops(ricochet, folder, swept(text, "model.d, from: 1e-4, to: 0.03, points: 700"), (1, 2, 3))
 
 
-@test
-def lines_that_are_followed_are_equal_for_all_ranks_and_after_stops(ricochet, folder):
+def test_lines_that_are_followed_are_equal_for_all_ranks_and_after_stops(ricochet, folder):
     text = MAP.replace("keep: 100", "keep: 20, follow: true").replace("2000", "6000")
     text = swept(text, "model.lambda, from: 0.1, to: 0.6, points: 25", "model.d, from: 1e-4, to: 0.03, points: 40, back: true")
     equal_for_all_ranks_and_after_stops(ricochet, folder, text, (1, 3))
 
 
-@test
-def basins_are_equal_for_all_ranks_and_after_stops(ricochet, folder):
+def test_basins_are_equal_for_all_ranks_and_after_stops(ricochet, folder):
     text = swept(BASIN.replace("1000", "20000"), "'iterate.start[1]', values: [0, 0.1]",
                  "'iterate.start[0]', from: -0.5, to: 0.5, points: 300")
     equal_for_all_ranks_and_after_stops(ricochet, folder, text, (1, 2))
 
 
-@test
-def a_task_does_not_depend_on_the_tasks_around_it(ricochet, folder):
+def test_a_task_does_not_depend_on_the_tasks_around_it(ricochet, folder):
     """In lanes side by side, whatever the neighbours' numbers are."""
     d = np.geomspace(1e-4, 0.03, 130)
     text = MAP.replace("keep: 100", "keep: 30, states: true, lyapunov: true, exponents: 3")
@@ -409,12 +386,7 @@ def a_task_does_not_depend_on_the_tasks_around_it(ricochet, folder):
         assert values[77].tobytes() == np.asarray(alone[name])[0].tobytes() == np.asarray(mixed[name])[1].tobytes(), name
 
 
-@test
-def a_long_task_stops_in_time(ricochet, folder):
+def test_a_long_task_stops_in_time(ricochet, folder):
     write(folder, "s.yaml", MAP.replace("keep: 100", "keep: 1").replace("2000", "1e13").replace("0.01", "1.5e-4"))
     result = ricochet.run("s.yaml", "--max-time", "1s", cwd=folder, ranks=2, limit=20)
     result.expect(STOPPED).expect_line("s.h5: ", "--max-time", "0 of 1 tasks", "--resume")
-
-
-if __name__ == "__main__":
-    program.main()

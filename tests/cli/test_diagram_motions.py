@@ -1,16 +1,13 @@
 """Diagrams of motions through the command line: sections, the map beside them, windows on their cycles, there and back."""
 
 import numpy as np
-import program
 from branches import run
 from diagram_studies import MAP, OSCILLATOR, BEYOND, swept, read, found_by
-from program import test
 
 # --- motions ---
 
 
-@test
-def motions_without_impacts_are_the_closed_form(ricochet, folder):
+def test_motions_without_impacts_are_the_closed_form(ricochet, folder):
     """x'' + 3 x' + x = 10 cos(4 t) stays below the wall; the section is at a phase of the force."""
     text = swept(OSCILLATOR.replace("force: 22", "force: 10").replace("keep: 60", "keep: 4, states: true, lyapunov: true, exponents: 2"),
                  "iterate.phase, values: [0, 0.25, 0.7]")
@@ -24,8 +21,7 @@ def motions_without_impacts_are_the_closed_form(ricochet, folder):
     assert np.allclose(found["exponents"], rates, rtol=1e-3)
 
 
-@test
-def sections_at_impacts_see_every_impact(ricochet, folder):
+def test_sections_at_impacts_see_every_impact(ricochet, folder):
     text = OSCILLATOR.replace("keep: 60", "keep: 60, states: true, section: impact, observe: time")
     found = found_by(ricochet, folder, text)
     strobe = found_by(ricochet, folder, OSCILLATOR, name="strobe")
@@ -39,8 +35,7 @@ def sections_at_impacts_see_every_impact(ricochet, folder):
     assert (other["values"] == found["state"][:, :, 1]).all()
 
 
-@test
-def motions_that_cannot_be_cut_are_rows(ricochet, folder):
+def test_motions_that_cannot_be_cut_are_rows(ricochet, folder):
     rows = found_by(ricochet, folder, swept(OSCILLATOR, "model.frequency, values: [4, 0]"))
     assert rows["outcome"] == ["periodic", "failed"] and rows["reason"][1].startswith(b"model.frequency = 0, expected > 0")
     assert np.isnan(rows["values"][1]).all() and rows["attractor_period"][1] == 0
@@ -54,8 +49,7 @@ def motions_that_cannot_be_cut_are_rows(ricochet, folder):
     assert found_by(ricochet, folder, pushed, name="away")["outcome"] == ["diverged"]
 
 
-@test
-def motions_beyond_grazing_stand_beside_their_map(ricochet, folder):
+def test_motions_beyond_grazing_stand_beside_their_map(ricochet, folder):
     """x'' + 3 x' + x = a cos(4 t): three windows, in which the map is right to first order."""
     path = run(ricochet, folder, BEYOND)
     found = read(path)
@@ -76,8 +70,7 @@ def motions_beyond_grazing_stand_beside_their_map(ricochet, folder):
     assert np.isnan(none["parameter"]).all() and np.isnan(none["map_values"]).all()
 
 
-@test
-def periods_of_motions_are_those_of_the_map(ricochet, folder):
+def test_periods_of_motions_are_those_of_the_map(ricochet, folder):
     """Nearer to grazing than an integrator's errors, stretched by the square root, are to rounding."""
     text = BEYOND.replace("values: [4]", "values: [1.5]").replace("values: [1.3e-5, 1.2e-4, 5e-3]", "from: 1e-6, to: 1e-4, points: 60, scale: log")
     found = found_by(ricochet, folder, text.replace("lyapunov: true", "states: true"))
@@ -86,8 +79,7 @@ def periods_of_motions_are_those_of_the_map(ricochet, folder):
     assert found_by(ricochet, folder, still, name="still")["attractor_period"].tolist() == [1]
 
 
-@test
-def windows_of_motions_are_located_on_their_cycles(ricochet, folder):
+def test_windows_of_motions_are_located_on_their_cycles(ricochet, folder):
     text = BEYOND.replace("lyapunov: true", "windows: true").replace("keep: 100", "keep: 0, measure: 10")
     text = text.replace("values: [1.3e-5, 1.2e-4, 5e-3]", "from: 3.2e-4, to: 6.3e-4, points: 10, scale: log")
     found = found_by(ricochet, folder, text, group="window")
@@ -99,8 +91,7 @@ def windows_of_motions_are_located_on_their_cycles(ricochet, folder):
     assert found["low"][k] < 3.2e-4 and found["high"][k] > 6.3e-4
 
 
-@test
-def windows_end_where_the_parameter_is_zero(ricochet, folder):
+def test_windows_end_where_the_parameter_is_zero(ricochet, folder):
     """No bracket around zero is narrow relative to it."""
     text = swept(MAP.replace(", d: 0.01", "").replace("keep: 100", "keep: 0, windows: true"), "model.d, from: -0.01, to: 0.012, points: 5")
     found = found_by(ricochet, folder, text, group="window")
@@ -114,8 +105,7 @@ iterate: {transient: 300, keep: 0, measure: 50, follow: true, windows: true}
 """
 
 
-@test
-def windows_of_one_period_are_told_apart_by_their_impacts(ricochet, folder):
+def test_windows_of_one_period_are_told_apart_by_their_impacts(ricochet, folder):
     """Both motions of x'' + 0.1 x' + x = a cos(1.8 t) have the period of the force, without an impact and with one."""
     text = swept(BESIDE_JUMP, "model.force, values: [2.6, 2.4, 2.2, 2, 1.8, 1.6, 1.4, 1.2, 1]")
     found = found_by(ricochet, folder, text, group="window")
@@ -123,16 +113,14 @@ def windows_of_one_period_are_told_apart_by_their_impacts(ricochet, folder):
     assert found["low_kind"][0] == "fold" and found["high_kind"][1] == "grazing"
 
 
-@test
-def brackets_of_a_line_that_is_followed_are_followed(ricochet, folder):
+def test_brackets_of_a_line_that_is_followed_are_followed(ricochet, folder):
     """Starts anew would come to the motion without impacts long before the fold."""
     text = swept(BESIDE_JUMP, "model.force, values: [2.6, 2.4, 2.2, 2, 1.8, 1.6, 1.4, 1.2, 1]")
     found = found_by(ricochet, folder, text, group="window")
     assert found["low_outside"][0] < found["low"][0] < found["low_inside"][0] < 1.02 * found["low_outside"][0]
 
 
-@test
-def motions_that_are_followed_jump_at_grazing(ricochet, folder):
+def test_motions_that_are_followed_jump_at_grazing(ricochet, folder):
     """x'' + 0.1 x' + x = a cos(1.8 t) grazes at a = 2.2472 with c_0 < 0, and jumps; on the way back it hits the wall in
     every period down to a fold at 1.2544."""
     text = BESIDE_JUMP.replace("keep: 0, measure: 50, follow: true, windows: true", "keep: 40, follow: true")
@@ -141,7 +129,3 @@ def motions_that_are_followed_jump_at_grazing(ricochet, folder):
     force = np.linspace(1, 2.6, 33)
     assert (up == (force > 2.2472)).all() and (down == (force > 1.2544)).all()
     assert abs(found["values"][25, -1] - found["values"][24, -1]) > 2
-
-
-if __name__ == "__main__":
-    program.main()

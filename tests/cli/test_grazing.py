@@ -6,10 +6,10 @@ import io
 
 import h5py
 import numpy as np
-import program
+import pytest
 import xarray
 from branches import equal_for_all_ranks_and_after_stops, refuse, rows, run
-from program import STOPPED, USAGE, study, test, words_of, write
+from program import STOPPED, USAGE, study, words_of, write
 
 ONE = """kind: grazing
 model: {type: chain, particles: 1, ends: free, gamma: 0, floor: null, wall: 1, restitution: 0.8, damping: 3, force: 1}
@@ -39,8 +39,7 @@ def read(path):
 # --- refusals ---
 
 
-@test
-def keys_and_values_are_refused_by_place_and_value(ricochet, folder):
+def test_keys_and_values_are_refused_by_place_and_value(ricochet, folder):
     section = "section: 0.25"
     even = "orbit.motion = even, but kind: grazing needs forced, conservative or autonomous motions"
     refuse(ricochet, folder, [
@@ -79,8 +78,7 @@ def keys_and_values_are_refused_by_place_and_value(ricochet, folder):
 # --- what they are ---
 
 
-@test
-def overdamped_oscillators_graze_where_their_closed_form_says(ricochet, folder):
+def test_overdamped_oscillators_graze_where_their_closed_form_says(ricochet, folder):
     """x'' + 3 x' + x = a cos(w t) before a wall at 1: one frequency in each of the three regimes."""
     found = read(run(ricochet, folder, SWEPT))
     w = np.array([6, 4, 1.5])
@@ -108,8 +106,7 @@ def overdamped_oscillators_graze_where_their_closed_form_says(ricochet, folder):
     assert np.allclose(found["coefficient"], closed, rtol=1e-7, atol=1e-12)
 
 
-@test
-def results_do_not_depend_on_the_section_or_the_scale(ricochet, folder):
+def test_results_do_not_depend_on_the_section_or_the_scale(ricochet, folder):
     text = ONE.replace("section: 0.25", "section: 0, coefficients: 7, windows: 5").replace("force: 1}", "force: 1, frequency: 4}")
     sections = read(run(ricochet, folder, text + "sweep: {parameter: grazing.section, from: 0, to: 0.9, points: 10}\n"))
     log = read(run(ricochet, folder, text.replace("to: 50", "to: 50, scale: log"), name="log"))
@@ -127,8 +124,7 @@ def results_do_not_depend_on_the_section_or_the_scale(ricochet, folder):
             assert np.allclose(own, found["coefficient"][k], rtol=1e-10)
 
 
-@test
-def windows_shrink_by_the_square_of_the_multiplier(ricochet, folder):
+def test_windows_shrink_by_the_square_of_the_multiplier(ricochet, folder):
     """In mu = a / a_grazing - 1, at w = 4: the border edges of periods 7 to 13 lie between 1e-2 and 2e-6."""
     found = {name: value[1] for name, value in read(run(ricochet, folder, SWEPT)).items() if len(value) == 3}
     assert found["window_exists"].dtype == bool and found["window_exists"].all()
@@ -149,8 +145,7 @@ def windows_shrink_by_the_square_of_the_multiplier(ricochet, folder):
         assert set(found["window_low_kind"]) == {kinds["flip"]} and set(found["window_high_kind"][1:]) == {kinds["border"]}
 
 
-@test
-def stable_cycles_of_the_map_lie_in_the_windows(ricochet, folder):
+def test_stable_cycles_of_the_map_lie_in_the_windows(ricochet, folder):
     """Iterates of the map that the result holds, in the middle of windows."""
     found = {name: value[1] for name, value in read(run(ricochet, folder, SWEPT)).items() if len(value) == 3}
     for period in (5, 7):
@@ -163,8 +158,7 @@ def stable_cycles_of_the_map_lie_in_the_windows(ricochet, folder):
         assert set(np.diff(hits[-20:])) == {period}
 
 
-@test
-def an_underdamped_oscillator_departs(ricochet, folder):
+def test_an_underdamped_oscillator_departs(ricochet, folder):
     text = ONE.replace("damping: 3, force: 1", "damping: 0.1, force: 1, frequency: 2").replace("section: 0.25", "windows: 0")
     found = read(run(ricochet, folder, text))
     assert abs(found["parameter"][0] - 3.006659275674582) < 1e-12
@@ -178,8 +172,7 @@ def an_underdamped_oscillator_departs(ricochet, folder):
     assert np.allclose(ratio, ratio[0], rtol=1e-7)
 
 
-@test
-def conservative_motions_are_mapped_across_their_flow(ricochet, folder):
+def test_conservative_motions_are_mapped_across_their_flow(ricochet, folder):
     """x'' + x + x^3 = 0 turns at 1 with the energy 3/4; its map has the multiplier 1."""
     text = """kind: grazing
 model: {type: chain, particles: 1, ends: free, gamma: 0, floor: null, wall: 1, cubic: 1}
@@ -203,8 +196,7 @@ grazing: {windows: 0}
 """
 
 
-@test
-def motions_with_impacts_of_their_own_graze(ricochet, folder):
+def test_motions_with_impacts_of_their_own_graze(ricochet, folder):
     """Beside a particle that hits its wall once in a period: the determinant of its saltation is e^2."""
     found = read(run(ricochet, folder, OWN))
     assert abs(found["parameter"][0] - 6) < 1e-12 and found["particle"][0] == 1 and abs(found["phase"][0] - 0.25) < 1e-9
@@ -214,8 +206,7 @@ def motions_with_impacts_of_their_own_graze(ricochet, folder):
     assert found["verdict"] == ["undecided"] and b"is complex" in found["verdict_reason"][0]
 
 
-@test
-def touches_of_motions_that_pass_a_wall_do_not_count(ricochet, folder):
+def test_touches_of_motions_that_pass_a_wall_do_not_count(ricochet, folder):
     """The impact of this family would push the particle through its wall."""
     text = OWN.replace("gamma: 0,", "gamma: 0.3,").replace("[1, 2]", "[0.5, 1.2]").replace("[0.1, 3]", "0.3")
     text = text.replace("[0.2, 0.5]}", "[0.8, 0], frequency: 1.3}").replace("[1, 0.1], v: [-0.3, 0.1]", "[0.5, 0], v: [-0.5, 0]")
@@ -223,8 +214,7 @@ def touches_of_motions_that_pass_a_wall_do_not_count(ricochet, folder):
     assert found["outcome"] == ["none"] and b"ends: bound" in found["reason"][0]
 
 
-@test
-def rows_without_a_grazing_point_say_why(ricochet, folder):
+def test_rows_without_a_grazing_point_say_why(ricochet, folder):
     """Two particles alike, without coupling: the walls at one place are touched at once."""
     text = ONE.replace("particles: 1", "particles: 2").replace("wall: 1", "wall: [1, 2]") + (
         'sweep: {parameter: "model.wall[1]", values: [2, 1, 3]}\n')
@@ -249,8 +239,7 @@ def rows_without_a_grazing_point_say_why(ricochet, folder):
     assert np.isnan(none["parameter"]).all() and (none["particle"] == -1).all() and none["side"] == 2 * ["none"]
 
 
-@test
-def families_that_do_not_begin_or_break_off_are_rows(ricochet, folder):
+def test_families_that_do_not_begin_or_break_off_are_rows(ricochet, folder):
     text = """kind: grazing
 model: {type: chain, particles: 1, ends: free, gamma: 0, floor: null, wall: 1, cubic: 1}
 orbit: {motion: conservative, excited: [0], period: 4}
@@ -275,8 +264,7 @@ branch: {parameter: model.frequency, from: 0.5, to: 2.5, natural: true}
 # --- in two parameters ---
 
 
-@test
-def changes_of_sign_lie_where_the_closed_form_says(ricochet, folder):
+def test_changes_of_sign_lie_where_the_closed_form_says(ricochet, folder):
     """c_i is proportional to sin(2 pi (i + 1) omega_d / w)."""
     path = run(ricochet, folder, TRACED)
     found = read(path)
@@ -307,8 +295,7 @@ def changes_of_sign_lie_where_the_closed_form_says(ricochet, folder):
     ricochet("show", path, "--verify", cwd=folder).expect_done()
 
 
-@test
-def curves_end_where_the_study_says(ricochet, folder):
+def test_curves_end_where_the_study_says(ricochet, folder):
     found = read(run(ricochet, folder, TRACED, "--set", "branch.trace.points=5"))
     assert found["curve_end_outcome"] == 2 * ["points"]
     found = read(run(ricochet, folder, TRACED, "--set", "branch.trace.first_high=0.5", name="first"))
@@ -323,17 +310,17 @@ GRID = TRACED.replace("low: 0.3, high: 3, step_most: 0.01", "low: 0.6, high: 1.2
     "sweep: {parameter: model.damping, from: 0.05, to: 0.5, points: 24}\n")
 
 
-@test
-def results_are_equal_for_all_ranks_and_after_stops(ricochet, folder):
-    found = read(equal_for_all_ranks_and_after_stops(ricochet, folder, GRID, (1, 2)))
-    for task, damping in enumerate(np.linspace(0.05, 0.5, 24)):
+@pytest.mark.parametrize("points", [6, pytest.param(24, marks=pytest.mark.long)])
+def test_results_are_equal_for_all_ranks_and_after_stops(ricochet, folder, points):
+    text = GRID.replace("points: 24", f"points: {points}")
+    found = read(equal_for_all_ranks_and_after_stops(ricochet, folder, text, (1, 2)))
+    for task, damping in enumerate(np.linspace(0.05, 0.5, points)):
         curve = rows(found, "curve", task)
         w = found["curve_second"][curve]
         assert np.allclose(found["curve_parameter"][curve], np.hypot(1 - w**2, damping * w), rtol=1e-8)
 
 
-@test
-def a_long_task_stops_in_time(ricochet, folder):
+def test_a_long_task_stops_in_time(ricochet, folder):
     write(folder, "s.yaml", TRACED.replace("step_most: 0.01, points: 2000", "step_most: 1e-6, points: 1000000"))
     result = ricochet.run("s.yaml", "--max-time", "1s", cwd=folder, ranks=2, limit=20)
     result.expect(STOPPED).expect_line("s.h5: ", "--max-time", "0 of 1 tasks", "--resume")
@@ -342,8 +329,7 @@ def a_long_task_stops_in_time(ricochet, folder):
 # --- how they are shown ---
 
 
-@test
-def groups_open_in_xarray_and_as_csv(ricochet, folder):
+def test_groups_open_in_xarray_and_as_csv(ricochet, folder):
     path = run(ricochet, folder, SWEPT)
     with xarray.open_dataset(path, engine="h5netcdf", group="grazing") as opened:
         assert opened.coefficient.dims == ("task", "power") and opened.eta.dims == ("task", "coordinate")
@@ -363,8 +349,7 @@ def groups_open_in_xarray_and_as_csv(ricochet, folder):
     assert len(table) == len(read(path)["curve_second"]) and {row["curve_verdict"] for row in table} == {"discontinuous"}
 
 
-@test
-def cards_say_what_happens_in_sentences(ricochet, folder):
+def test_cards_say_what_happens_in_sentences(ricochet, folder):
     out = ricochet("show", run(ricochet, folder, SWEPT), cwd=folder).expect_done().out
     for phrase in (
         "task 1: model.frequency = 4\n",
@@ -382,7 +367,3 @@ def cards_say_what_happens_in_sentences(ricochet, folder):
     assert out.count("  grazes at ") == 5 and "... 2 more tasks" in out
     out = ricochet("check", "many.yaml", cwd=folder).expect_done().out
     assert "kind grazing" in out and "tasks   7" in out and "memory" in out and "result" in out
-
-
-if __name__ == "__main__":
-    program.main()

@@ -8,7 +8,7 @@ import io
 import h5py
 import numpy as np
 import xarray
-from program import USAGE, study, sweep, test, trajectory, words_of, write
+from program import USAGE, study, trajectory, words_of, write
 
 DRIVEN = """kind: trajectory
 model: {type: chain, particles: 1, ends: free, gamma: 0, stiffness: 0, damping: 0.1, floor: -1, wall: 1,
@@ -36,24 +36,21 @@ def history(found, task):
     return found["lyapunov_time"][first:last], found["lyapunov_history"][first:last]
 
 
-@test
-def exponents_are_there_only_when_asked_for(ricochet, folder):
+def test_exponents_are_there_only_when_asked_for(ricochet, folder):
     for text in (DRIVEN.replace(", lyapunov: true", ""), DRIVEN.replace("true", "false")):
         path = run(ricochet, folder, text, "--force")
         with h5py.File(path) as file:
             assert not [name for name in file["trajectory"] if "lyapunov" in name] and "exponent" not in file
 
 
-@test
-def damping_alone_gives_its_own_exponents(ricochet, folder):
+def test_damping_alone_gives_its_own_exponents(ricochet, folder):
     text = trajectory(2, floor="null", model="damping: 0.3", duration=300, time="samples: 2, lyapunov: true")
     found = read(run(ricochet, folder, text))["lyapunov"][0]
     assert np.allclose(found, -0.15, atol=0.02), found  # with the remainder of a turn over the time
     assert abs(found.sum() + 2 * 0.3) < 1e-10, found
 
 
-@test
-def the_sum_of_the_exponents_is_the_loss_of_phase_volume(ricochet, folder):
+def test_the_sum_of_the_exponents_is_the_loss_of_phase_volume(ricochet, folder):
     found = read(run(ricochet, folder, DRIVEN))
     for task in range(3):
         impacts = np.diff(found["impact_offset"])[task]
@@ -62,8 +59,7 @@ def the_sum_of_the_exponents_is_the_loss_of_phase_volume(ricochet, folder):
     assert found["lyapunov"][0, 0] < -0.2 and (found["lyapunov"][1:, 0] > 0.1).all(), found["lyapunov"]
 
 
-@test
-def the_motion_is_that_of_a_run_without_them(ricochet, folder):
+def test_the_motion_is_that_of_a_run_without_them(ricochet, folder):
     """Up to rounding, which a periodic motion forgets."""
     text = DRIVEN.replace("[9, 9.875, 10.5]", "[9]")
     found = read(run(ricochet, folder, text))
@@ -73,8 +69,7 @@ def the_motion_is_that_of_a_run_without_them(ricochet, folder):
         assert np.allclose(found[name], plain[name], rtol=1e-9, atol=1e-9), name
 
 
-@test
-def convergence_is_kept_at_growing_times_up_to_the_last(ricochet, folder):
+def test_convergence_is_kept_at_growing_times_up_to_the_last(ricochet, folder):
     found = read(run(ricochet, folder, DRIVEN.replace("lyapunov: true", "lyapunov: true, lyapunov_interval: 0.5")))
     for task in range(3):
         times, values = history(found, task)
@@ -85,8 +80,7 @@ def convergence_is_kept_at_growing_times_up_to_the_last(ricochet, folder):
     assert found["lyapunov_offset"][-1] == len(found["lyapunov_time"])
 
 
-@test
-def groups_open_in_xarray_with_their_axes(ricochet, folder):
+def test_groups_open_in_xarray_with_their_axes(ricochet, folder):
     path = run(ricochet, folder, DRIVEN)
     with xarray.open_dataset(path, engine="h5netcdf", group="trajectory") as opened:
         assert opened.lyapunov.dims == ("task", "exponent") and opened.sizes["exponent"] == 2
@@ -96,8 +90,7 @@ def groups_open_in_xarray_with_their_axes(ricochet, folder):
     ricochet("show", path, "--verify", cwd=folder).expect_done()
 
 
-@test
-def csv_of_the_convergence_tells_the_task(ricochet, folder):
+def test_csv_of_the_convergence_tells_the_task(ricochet, folder):
     path = run(ricochet, folder, DRIVEN)
     out = ricochet("show", path, "--csv=trajectory/lyapunov_row", cwd=folder).expect_done().out
     rows = list(csv.DictReader(io.StringIO(out)))
@@ -107,8 +100,7 @@ def csv_of_the_convergence_tells_the_task(ricochet, folder):
     assert "lyapunov_history" in ricochet("show", path, cwd=folder).expect_done().out
 
 
-@test
-def a_motion_that_grazes_ends_with_what_was_known_by_then(ricochet, folder):
+def test_a_motion_that_grazes_ends_with_what_was_known_by_then(ricochet, folder):
     """It touches its floor with speed 0 at 3 pi / 2."""
     text = trajectory(start="v: 1", time="samples: 21, lyapunov: true",
                       sweep="{parameter: time.lyapunov_interval, values: [1, 30]}")
@@ -123,15 +115,13 @@ def a_motion_that_grazes_ends_with_what_was_known_by_then(ricochet, folder):
     assert np.isfinite(found["q"][reached]).all() and np.isnan(found["q"][~reached]).all()
 
 
-@test
-def a_contact_that_rests_puts_its_directions_out(ricochet, folder):
+def test_a_contact_that_rests_puts_its_directions_out(ricochet, folder):
     text = trajectory(floor=0.5, model="restitution: 0.5", start="q: 1", time="samples: 2, lyapunov: true")
     found = read(run(ricochet, folder, text))
     assert found["words"] == ["completed"] and np.isneginf(found["lyapunov"]).all(), found["lyapunov"]
 
 
-@test
-def the_largest_exponent_of_an_orbit_is_that_of_its_largest_multiplier(ricochet, folder):
+def test_the_largest_exponent_of_an_orbit_is_that_of_its_largest_multiplier(ricochet, folder):
     """By the slope of the convergence, when the first periods are forgotten. The first tangent vector is that of
     particle 0, and the orbit is localised there."""
     model = "model: {type: chain, particles: 30, gamma: 0.17, floor: -1}\n"
@@ -147,8 +137,7 @@ def the_largest_exponent_of_an_orbit_is_that_of_its_largest_multiplier(ricochet,
     assert abs(slopes[-1] - growth) < 1e-5 * growth, (slopes, growth)
 
 
-@test
-def a_task_without_a_motion_has_no_exponents(ricochet, folder):
+def test_a_task_without_a_motion_has_no_exponents(ricochet, folder):
     text = trajectory(time="samples: 2, lyapunov: true", sweep="{parameter: start.q, values: [0, -1.5, 0.5]}")
     found = read(run(ricochet, folder, text))
     assert found["words"] == ["completed", "refused", "completed"]
@@ -156,8 +145,7 @@ def a_task_without_a_motion_has_no_exponents(ricochet, folder):
     assert len(history(found, 1)[0]) == 0
 
 
-@test
-def what_cannot_be_is_refused(ricochet, folder):
+def test_what_cannot_be_is_refused(ricochet, folder):
     write(folder, "s.yaml", trajectory(1000000, time="lyapunov: true"))
     write(folder, "t.yaml", trajectory(time="lyapunov: true, lyapunov_interval: 0"))
     write(folder, "o.yaml", study() + "time: {lyapunov: true}\n")

@@ -2,8 +2,7 @@
 
 import h5py
 import numpy as np
-import program
-from program import USAGE, assert_same, study, test, words_of, write
+from program import USAGE, assert_same, study, words_of, write
 
 MODEL = "model: {type: duffing_chain, particles: 2, stiffness: [3, 1], cubic: [0, 0], wall: 2}\n"
 ENERGY = "branch: {parameter: orbit.energy, from: 0.05, to: 3, step_most: 0.1, cross: true}\n"
@@ -38,8 +37,7 @@ def first_special(found, kind, task):
     return begin + found["special_kind"][begin:end].index(kind)
 
 
-@test
-def keys_of_a_type_of_model_are_refused_by_name(ricochet, folder):
+def test_keys_of_a_type_of_model_are_refused_by_name(ricochet, folder):
     but = "is a key of model.type: chain, and this is model.type: duffing_chain"
     for old, new, *phrases in [
         ("wall: 2", "wall: 2, gamma: 0.1", f"s.yaml:2: model.gamma {but}"),
@@ -66,8 +64,7 @@ def keys_of_a_type_of_model_are_refused_by_name(ricochet, folder):
         USAGE, "s.yaml:2: model.type = duffing_chain, but a start on an orbit needs model.type = chain")
 
 
-@test
-def starts_at_touches_are_refused_by_what_they_lack(ricochet, folder):
+def test_starts_at_touches_are_refused_by_what_they_lack(ricochet, folder):
     for old, new, phrase in [
         ("at_start: [1]", "at_half: [1]", "s.yaml:4: missing key branch.from (a number): at which energy the branch starts"),
         ("low: 1", "low: 1, from: 2", "s.yaml:3: orbit.mode gives a first guess, and so do the impacts"),
@@ -79,8 +76,7 @@ def starts_at_touches_are_refused_by_what_they_lack(ricochet, folder):
         ricochet("check", "s.yaml", cwd=folder).expect_refused(USAGE, phrase)
 
 
-@test
-def orbits_of_duffing_chains_are_refused_by_place_and_value(ricochet, folder):
+def test_orbits_of_duffing_chains_are_refused_by_place_and_value(ricochet, folder):
     for old, new, phrase in [
         ("ritz", "impulse", "s.yaml:3: orbit.method = impulse is for model.type: chain, and this is model.type: duffing"),
         ("at_start: [1]", "at_half: [1]", "s.yaml:3: orbit.method = ritz is for one impact per period, expected one"),
@@ -101,8 +97,7 @@ def orbits_of_duffing_chains_are_refused_by_place_and_value(ricochet, folder):
         USAGE, "s.yaml:", "orbit.special_points = true with orbit.method = shooting, expected method: impulse or dense")
 
 
-@test
-def shooting_finds_the_orbits_of_chains_and_nonlinear_ones_too(ricochet, folder):
+def test_shooting_finds_the_orbits_of_chains_and_nonlinear_ones_too(ricochet, folder):
     """Those of linear chains are known by impulse responses; the others an event-driven run confirms."""
     base = study(6, at_start="[3]", sweep="{parameter: model.gamma, from: 0, to: 0.15, points: 4}")
     found = {}
@@ -122,8 +117,7 @@ def shooting_finds_the_orbits_of_chains_and_nonlinear_ones_too(ricochet, folder)
         assert (file["orbits/energy"][()] != found["impulse"]["energy"]).all()
 
 
-@test
-def approximations_by_ritz_converge_as_they_say(ricochet, folder):
+def test_approximations_by_ritz_converge_as_they_say(ricochet, folder):
     """As the third power of their number with constants; without, they stall. The orbit is the one found by shooting."""
     with h5py.File(run(ricochet, folder, RITZ, name="ritz")) as file:
         orbits = {name: data[()] for name, data in file["orbits"].items()}
@@ -145,16 +139,14 @@ def approximations_by_ritz_converge_as_they_say(ricochet, folder):
     assert (stalled > 0.02).all() and (stalled < 0.1).all(), stalled
 
 
-@test
-def fewer_functions_are_taken_when_a_tolerance_is_enough(ricochet, folder):
+def test_fewer_functions_are_taken_when_a_tolerance_is_enough(ricochet, folder):
     path = run(ricochet, folder, RITZ, "--set", "orbit.tolerance=1e-3")
     with h5py.File(path) as file:
         functions, error = file["orbits/ritz_functions"][()], file["orbits/ritz_error"][()]
     assert (functions >= 4).all() and (functions <= 8).all() and (error <= 1e-3).all()
 
 
-@test
-def orbits_that_do_not_exist_are_rows(ricochet, folder):
+def test_orbits_that_do_not_exist_are_rows(ricochet, folder):
     """At the blow-up of the linear part nothing is found; beyond it the impulse pulls."""
     text = RITZ.replace("ritz", "shooting").split("sweep:")[0] + "sweep: {parameter: orbit.period, values: [6.8, 6.07, 1e-9]}\n"
     with h5py.File(run(ricochet, folder, text, "--set", "model.cubic=0")) as file:
@@ -162,8 +154,7 @@ def orbits_that_do_not_exist_are_rows(ricochet, folder):
         assert words_of(file["orbits/outcome"])[2] in ("failed", "inadmissible") and len(file["orbits/reason"][1]) > 10
 
 
-@test
-def orbits_that_end_before_all_nonlinear_terms_say_where(ricochet, folder):
+def test_orbits_that_end_before_all_nonlinear_terms_say_where(ricochet, folder):
     """A spring that softens: the family turns back at a cubic coefficient, wherever it should have gone."""
     text = RITZ.replace("ritz", "shooting").split("sweep:")[0] + 'sweep: {parameter: "model.cubic[1]", values: [-0.05, -0.1, -10]}\n'
     with h5py.File(run(ricochet, folder, text)) as file:
@@ -173,8 +164,7 @@ def orbits_that_end_before_all_nonlinear_terms_say_where(ricochet, folder):
         assert f"with growing nonlinear terms the family turns back at {part}" in reason, reason
 
 
-@test
-def the_first_mode_touches_the_wall_where_its_closed_form_says(ricochet, folder):
+def test_the_first_mode_touches_the_wall_where_its_closed_form_says(ricochet, folder):
     found = read(run(ricochet, folder, SWEPT))
     assert set(found["outcome"]) == {"bound"}
     energies = [found["special_energy"][first_special(found, "grazing", task)] for task in range(3)]
@@ -191,23 +181,20 @@ def the_first_mode_touches_the_wall_where_its_closed_form_says(ricochet, folder)
     assert found["segment_origin"][:2] == ["start", "grazing"]
 
 
-@test
-def energies_of_motions_with_an_impact_are_those_of_the_closed_form(ricochet, folder):
+def test_energies_of_motions_with_an_impact_are_those_of_the_closed_form(ricochet, folder):
     period = 2 * np.pi / (1.1 * LOWEST)
     found = read(run(ricochet, folder, PERIOD, "--set", f"sweep.values=[{period:.17g}]"))
     assert abs(found["point_energy"][0] - 1.7113950296) < 1e-9 and abs(found["point_period"][0] - period) < 1e-11
 
 
-@test
-def branches_in_the_energy_start_at_a_period(ricochet, folder):
+def test_branches_in_the_energy_start_at_a_period(ricochet, folder):
     found = read(run(ricochet, folder, PERIOD))
     first = found["point_offset"][:-1]
     assert np.allclose(found["point_period"][first], [7, 14.9, 15], rtol=1e-10)
     assert np.allclose(found["point_parameter"][first], found["point_energy"][first], rtol=1e-9)
 
 
-@test
-def families_that_turn_back_before_all_nonlinear_terms_are_told(ricochet, folder):
+def test_families_that_turn_back_before_all_nonlinear_terms_are_told(ricochet, folder):
     """Newton's method from the motion of the linear part would fail there, or find a motion of another family."""
     text = PERIOD.replace("cubic: [0, 0]", "cubic: [0, 0.1]")
     found = read(run(ricochet, folder, text, "--set", "sweep.values=[5.9, 12, 27.6]"))
@@ -219,16 +206,14 @@ def families_that_turn_back_before_all_nonlinear_terms_are_told(ricochet, folder
     assert abs(found["point_period"][0] - 27.6) < 1e-9 and abs(found["point_energy"][0] - 2.15221) < 1e-5
 
 
-@test
-def orbits_say_where_their_family_turns_back(ricochet, folder):
+def test_orbits_say_where_their_family_turns_back(ricochet, folder):
     text = RITZ.replace("ritz", "shooting").split("sweep:")[0] + "sweep: {parameter: orbit.period, values: [6]}\n"
     with h5py.File(run(ricochet, folder, text, "--set", "model.cubic[1]=0.1")) as file:
         assert words_of(file["orbits/outcome"]) == ["failed"]
         assert file["orbits/reason"][0].decode().endswith("the family turns back at 0.0205 of them")
 
 
-@test
-def families_start_where_a_mode_touches_after_some_swings(ricochet, folder):
+def test_families_start_where_a_mode_touches_after_some_swings(ricochet, folder):
     """There energy and period are those of the smooth mode; from there on the impact pushes."""
     found = read(run(ricochet, folder, TOUCH))
     first = found["point_offset"][:-1]
@@ -247,8 +232,7 @@ def families_start_where_a_mode_touches_after_some_swings(ricochet, folder):
     assert later.sum() > 18 and (found["impact_impulse"][later] > 0).all()
 
 
-@test
-def modes_that_do_not_touch_are_told(ricochet, folder):
+def test_modes_that_do_not_touch_are_told(ricochet, folder):
     """In the second mode of three equal particles the one in the middle stands still."""
     text = ("kind: branch\nmodel: {type: chain, particles: 3, ends: fixed, gamma: 1, floor: -1}\n"
             "orbit: {mode: 1, at_start: [1]}\nbranch: {parameter: orbit.energy, to: 6}\n")
@@ -256,15 +240,13 @@ def modes_that_do_not_touch_are_told(ricochet, folder):
     assert found["outcome"] == ["failed_start"] and b"moves particle 1 by" in found["reason"][0], found["reason"]
 
 
-@test
-def motions_of_a_period_before_compliant_walls_start_branches_in_the_energy(ricochet, folder):
+def test_motions_of_a_period_before_compliant_walls_start_branches_in_the_energy(ricochet, folder):
     """They have no impacts, whoever presses the wall."""
     found = read(run(ricochet, folder, PERIOD, "--set", "model.hertz=1000", "--set", "sweep.values=[7]"))
     assert found["outcome"] == ["bound"] and abs(found["point_period"][0] - 7) < 1e-9, found["reason"]
 
 
-@test
-def energies_outside_the_bounds_are_told(ricochet, folder):
+def test_energies_outside_the_bounds_are_told(ricochet, folder):
     for bound, phrase in (("low=5", "at least branch.low = 5"), ("high=1.5", "at most branch.high = 1.5")):
         found = read(run(ricochet, folder, PERIOD, "--set", f"branch.{bound}", "--set", "sweep.values=[7]", name=bound))
         reason = found["reason"][0].decode()
@@ -272,8 +254,7 @@ def energies_outside_the_bounds_are_told(ricochet, folder):
         assert reason.endswith(f"expected {phrase}"), reason
 
 
-@test
-def branches_go_on_from_modes_that_a_sweep_names(ricochet, folder):
+def test_branches_go_on_from_modes_that_a_sweep_names(ricochet, folder):
     """The mode was the first guess there: here it is the state. Along the period, its energy is no longer given."""
     found = read(run(ricochet, folder, SWEPT))
     special = first_special(found, "grazing", 1) - found["special_offset"][1]
@@ -286,8 +267,7 @@ def branches_go_on_from_modes_that_a_sweep_names(ricochet, folder):
         assert went["points"][0] > 1, went["outcome"]
 
 
-@test
-def starts_without_a_value_take_the_own_one(ricochet, folder):
+def test_starts_without_a_value_take_the_own_one(ricochet, folder):
     text = study(6, gamma="0.05", at_start="[3]").replace("kind: orbits", "kind: branch")
     own = run(ricochet, folder, text + "branch: {parameter: model.gamma, to: 0.1}\n")
     said = run(ricochet, folder, text + "branch: {parameter: model.gamma, from: 0.05, to: 0.1}\n", name="t")
@@ -296,8 +276,7 @@ def starts_without_a_value_take_the_own_one(ricochet, folder):
     assert read(own)["point_parameter"][0] == 0.05
 
 
-@test
-def modes_are_equal_for_all_ranks(ricochet, folder):
+def test_modes_are_equal_for_all_ranks(ricochet, folder):
     paths = []
     for ranks in (1, 2, 3):
         own = folder / str(ranks)
@@ -308,8 +287,7 @@ def modes_are_equal_for_all_ranks(ricochet, folder):
         assert_same(paths[0], paths[-1])
 
 
-@test
-def a_duffing_chain_keeps_its_energy_and_hits_its_wall(ricochet, folder):
+def test_a_duffing_chain_keeps_its_energy_and_hits_its_wall(ricochet, folder):
     text = (f"kind: trajectory\n{MODEL}start: {{q: [0.5, 1.9], v: [0, 1]}}\ntime: {{duration: 50}}\n")
     with h5py.File(run(ricochet, folder, text, "--set", "model.cubic[1]=0.2")) as file:
         group = file["trajectory"]
@@ -317,7 +295,3 @@ def a_duffing_chain_keeps_its_energy_and_hits_its_wall(ricochet, folder):
         spring = 1.4**2 / 2 + 0.2 * 1.4**4 / 4
         assert abs(start - (3 * 0.25 / 2 + spring + 0.5)) < 1e-14 and abs(end - start) < 1e-10
         assert len(group["impact_particle"]) > 0 and set(group["impact_particle"][()]) == {1}
-
-
-if __name__ == "__main__":
-    program.main()

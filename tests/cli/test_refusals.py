@@ -4,8 +4,8 @@ with the place and says what is allowed, and nothing is left behind."""
 import os
 from concurrent.futures import ThreadPoolExecutor
 
-import program
-from program import FILES, USAGE, names, study, sweep, test, write
+import pytest
+from program import FILES, USAGE, names, study, sweep, write
 
 BASE = """kind: orbits
 title: one particle
@@ -65,15 +65,13 @@ def refuse_sweeps(ricochet, folder, cases):
     refuse_all(ricochet, folder, [(f"{head}sweep: {text}\n", *rest) for text, *rest in cases])
 
 
-@test
-def the_base_of_all_variations_is_accepted(ricochet, folder):
+def test_the_base_of_all_variations_is_accepted(ricochet, folder):
     write(folder, "s.yaml", BASE)
     ricochet("check", "s.yaml", cwd=folder).expect_done()
     ricochet.run("s.yaml", cwd=folder).expect_done()
 
 
-@test
-def unknown_keys_name_the_nearest(ricochet, folder):
+def test_unknown_keys_name_the_nearest(ricochet, folder):
     refuse_variations(
         ricochet,
         folder,
@@ -86,8 +84,7 @@ def unknown_keys_name_the_nearest(ricochet, folder):
     )
 
 
-@test
-def duplicate_keys_are_refused(ricochet, folder):
+def test_duplicate_keys_are_refused(ricochet, folder):
     refuse_variations(
         ricochet,
         folder,
@@ -98,8 +95,7 @@ def duplicate_keys_are_refused(ricochet, folder):
     )
 
 
-@test
-def wrong_types_are_refused(ricochet, folder):
+def test_wrong_types_are_refused(ricochet, folder):
     refuse_variations(
         ricochet,
         folder,
@@ -116,8 +112,7 @@ def wrong_types_are_refused(ricochet, folder):
     )
 
 
-@test
-def trailing_characters_are_refused(ricochet, folder):
+def test_trailing_characters_are_refused(ricochet, folder):
     refuse_variations(
         ricochet,
         folder,
@@ -129,8 +124,7 @@ def trailing_characters_are_refused(ricochet, folder):
     )
 
 
-@test
-def infinite_numbers_and_nan_are_refused(ricochet, folder):
+def test_infinite_numbers_and_nan_are_refused(ricochet, folder):
     refuse_variations(
         ricochet,
         folder,
@@ -146,8 +140,7 @@ def infinite_numbers_and_nan_are_refused(ricochet, folder):
     )
 
 
-@test
-def numbers_out_of_range_are_refused(ricochet, folder):
+def test_numbers_out_of_range_are_refused(ricochet, folder):
     refuse_variations(
         ricochet,
         folder,
@@ -164,8 +157,7 @@ def numbers_out_of_range_are_refused(ricochet, folder):
     )
 
 
-@test
-def patterns_outside_the_chain_are_refused(ricochet, folder):
+def test_patterns_outside_the_chain_are_refused(ricochet, folder):
     refuse_variations(
         ricochet,
         folder,
@@ -182,8 +174,7 @@ def patterns_outside_the_chain_are_refused(ricochet, folder):
     )
 
 
-@test
-def ranges_that_are_none_are_refused(ricochet, folder):
+def test_ranges_that_are_none_are_refused(ricochet, folder):
     refuse_sweeps(
         ricochet,
         folder,
@@ -204,8 +195,7 @@ def ranges_that_are_none_are_refused(ricochet, folder):
     )
 
 
-@test
-def parameters_that_cannot_be_swept_are_refused(ricochet, folder):
+def test_parameters_that_cannot_be_swept_are_refused(ricochet, folder):
     refuse_sweeps(
         ricochet,
         folder,
@@ -220,8 +210,7 @@ def parameters_that_cannot_be_swept_are_refused(ricochet, folder):
     )
 
 
-@test
-def what_is_not_one_yaml_mapping_is_refused(ricochet, folder):
+def test_what_is_not_one_yaml_mapping_is_refused(ricochet, folder):
     cases = [
         ("", 1, "empty"),
         ("# only a comment\n", 1, "empty"),
@@ -236,14 +225,12 @@ def what_is_not_one_yaml_mapping_is_refused(ricochet, folder):
     refuse_all(ricochet, folder, cases)
 
 
-@test
-def deep_nesting_is_refused_at_once(ricochet, folder):
+def test_deep_nesting_is_refused_at_once(ricochet, folder):
     for depth in (33, 100000):  # the second takes libyaml's tree minutes
         refused_by_both(ricochet, folder, "model: " + "[" * depth + "]" * depth, "s.yaml:1: ", "deeper than 32")
 
 
-@test
-def aliases_anchors_and_tags_are_refused(ricochet, folder):
+def test_aliases_anchors_and_tags_are_refused(ricochet, folder):
     refuse_variations(
         ricochet,
         folder,
@@ -255,13 +242,11 @@ def aliases_anchors_and_tags_are_refused(ricochet, folder):
     )
 
 
-@test
-def studies_over_8_MiB_are_refused(ricochet, folder):
+def test_studies_over_8_MiB_are_refused(ricochet, folder):
     refused_by_both(ricochet, folder, BASE + "#" * (8 << 20), "s.yaml: ", "8 MiB")
 
 
-@test
-def what_later_versions_bring_is_refused_by_name(ricochet, folder):
+def test_what_later_versions_bring_is_refused_by_name(ricochet, folder):
     later = "not in this version"
     kinds = ("atlas",)
     cases = [
@@ -272,8 +257,7 @@ def what_later_versions_bring_is_refused_by_name(ricochet, folder):
     refuse_variations(ricochet, folder, cases)
 
 
-@test
-def assignments_are_refused_like_the_study(ricochet, folder):
+def test_assignments_are_refused_like_the_study(ricochet, folder):
     write(folder, "s.yaml", BASE)
     cases = [
         ("model.gamma=0.1x", "model.gamma = 0.1x", "a number >= 0"),
@@ -294,23 +278,20 @@ def assignments_are_refused_like_the_study(ricochet, folder):
     assert names(folder) == ["s.yaml"]
 
 
-@test
-def sizes_beyond_the_memory_are_refused(ricochet, folder):
+def test_sizes_beyond_the_memory_are_refused(ricochet, folder):
     memory = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE")
     if memory > 45e9:
-        raise program.Skip("this machine may well hold the largest chain there is")
+        pytest.skip("this machine may well hold the largest chain there is")
     refused_by_both(ricochet, folder, BASE.replace("particles: 30", "particles: 1e9"), "s.yaml:5: ", "model.particles",
                     "GB of memory")
 
 
-@test
-def dense_orbits_of_long_chains_are_refused(ricochet, folder):
+def test_dense_orbits_of_long_chains_are_refused(ricochet, folder):
     refused_by_both(ricochet, folder, BASE.replace("particles: 30", "particles: 100000").replace("impulse", "dense"),
                     "s.yaml:14: ", "orbit.method = dense", "method: impulse")
 
 
-@test
-def multipliers_of_long_chains_are_refused(ricochet, folder):
+def test_multipliers_of_long_chains_are_refused(ricochet, folder):
     long = BASE.replace("particles: 30", "particles: 401")
     refused_by_both(ricochet, folder, long.replace("states: true", "multipliers: true"), "s.yaml:15: ",
                     "orbit.multipliers = true with 401 particles", "at most 400", "orbit.stable")
@@ -320,15 +301,13 @@ def multipliers_of_long_chains_are_refused(ricochet, folder):
     ricochet("check", "s.yaml", cwd=folder).expect_done()
 
 
-@test
-def results_beyond_the_disk_are_refused(ricochet, folder):
+def test_results_beyond_the_disk_are_refused(ricochet, folder):
     write(folder, "s.yaml", study(1000000, sweep=sweep("1e7")))
     ricochet("run", "s.yaml", cwd=folder).expect_refused(FILES, "s.h5: ", "free")
     assert names(folder) == ["s.yaml"]
 
 
-@test
-def studies_that_cannot_be_read_are_refused(ricochet, folder):
+def test_studies_that_cannot_be_read_are_refused(ricochet, folder):
     (folder / "folder").mkdir()
     for command in ("check", "run"):
         ricochet(command, "nowhere.yaml", cwd=folder).expect_refused(FILES, "nowhere.yaml: ", "No such file")
@@ -336,8 +315,7 @@ def studies_that_cannot_be_read_are_refused(ricochet, folder):
     assert names(folder) == ["folder"]
 
 
-@test
-def an_output_that_exists_is_refused_and_kept(ricochet, folder):
+def test_an_output_that_exists_is_refused_and_kept(ricochet, folder):
     write(folder, "s.yaml", BASE)
     write(folder, "s.h5", "precious")
     for ranks in (0, 2):
@@ -347,24 +325,21 @@ def an_output_that_exists_is_refused_and_kept(ricochet, folder):
     assert names(folder) == ["s.h5", "s.yaml"]
 
 
-@test
-def folders_that_cannot_be_written_are_refused(ricochet, folder):
+def test_folders_that_cannot_be_written_are_refused(ricochet, folder):
     write(folder, "s.yaml", BASE)
     for output, ranks in [("/proc/x.h5", 2), ("s.yaml/x.h5", 0), ("nowhere/x.h5", 0)]:
         ricochet("run", "s.yaml", "-o", output, cwd=folder, ranks=ranks).expect_refused(FILES, output)
     assert names(folder) == ["s.yaml"]
 
 
-@test
-def a_study_is_not_overwritten_by_its_own_result(ricochet, folder):
+def test_a_study_is_not_overwritten_by_its_own_result(ricochet, folder):
     text = write(folder, "s.h5", BASE).read_bytes()  # the default output of a study with this name is itself
     for words in ([], ["--force"], ["--resume"], ["-o", "./s.h5", "--force"]):
         ricochet.run("s.h5", *words, cwd=folder).expect_refused(USAGE, "s.h5: " if "-o" not in words else "./s.h5: ")
     assert (folder / "s.h5").read_bytes() == text and names(folder) == ["s.h5"]
 
 
-@test
-def a_folder_as_output_is_refused_before_anything_is_computed(ricochet, folder):
+def test_a_folder_as_output_is_refused_before_anything_is_computed(ricochet, folder):
     write(folder, "s.yaml", BASE)
     (folder / "x.h5").mkdir()
     for words in ([], ["--force"], ["--resume"]):
@@ -374,8 +349,7 @@ def a_folder_as_output_is_refused_before_anything_is_computed(ricochet, folder):
         assert names(folder) == ["s.yaml", "x.h5"], (words, names(folder))
 
 
-@test
-def output_names_that_cannot_be_are_refused(ricochet, folder):
+def test_output_names_that_cannot_be_are_refused(ricochet, folder):
     write(folder, "s.yaml", BASE)
     ricochet("run", "s.yaml", "-o", "", cwd=folder).expect_refused(USAGE, "-o: ", "1 to")
     ricochet("run", "s.yaml", "-o", "x" * 5000, cwd=folder).expect_refused(USAGE, "-o: ", "1 to")
@@ -384,14 +358,9 @@ def output_names_that_cannot_be_are_refused(ricochet, folder):
     assert names(folder) == ["s.yaml"]
 
 
-@test
-def refusals_are_said_once_by_many_ranks(ricochet, folder):
+def test_refusals_are_said_once_by_many_ranks(ricochet, folder):
     write(folder, "s.yaml", BASE.replace("0.1", "0.1x"))
     ricochet("run", "s.yaml", cwd=folder, ranks=3).expect_refused(USAGE, "s.yaml:7: ", "model.gamma = 0.1x", ">= 0")
     ricochet("run", "nowhere.yaml", cwd=folder, ranks=3).expect_refused(FILES, "nowhere.yaml: ")
     ricochet("run", "s.yaml", "--frob", cwd=folder, ranks=3).expect_refused(USAGE, "ricochet run: ", "--frob")
     assert names(folder) == ["s.yaml"]
-
-
-if __name__ == "__main__":
-    program.main()

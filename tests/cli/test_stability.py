@@ -6,7 +6,7 @@ import io
 import h5py
 import numpy as np
 import xarray
-from program import USAGE, study, sweep, test, trajectory, words_of, write
+from program import USAGE, study, sweep, trajectory, words_of, write
 
 CRITICAL = 0.132081944879  # of one particle in a ring of 30, T = 1.5 pi: a pair leaves the circle at +1
 COUNTS = ("multiplier_outside", "multiplier_real_above", "multiplier_real_below", "multiplier_complex")
@@ -28,8 +28,7 @@ def read(path, group="orbits"):
         return found | {f"{n}_words": words_of(d) for n, d in file[group].items() if h5py.check_enum_dtype(d.dtype)}
 
 
-@test
-def only_what_was_asked_for_is_there(ricochet, folder):
+def test_only_what_was_asked_for_is_there(ricochet, folder):
     plain = read(run(ricochet, folder, ring("states: false", 3), name="plain"))
     assert not [name for name in plain if name.startswith(("multiplier", "stable"))]
     stable = run(ricochet, folder, ring("stable: true", 3), name="stable")
@@ -40,8 +39,7 @@ def only_what_was_asked_for_is_there(ricochet, folder):
         assert file["orbits/multipliers"].shape == (3, 60) and file["multiplier"].shape == (60,)
 
 
-@test
-def multipliers_are_complex_numbers_with_an_axis(ricochet, folder):
+def test_multipliers_are_complex_numbers_with_an_axis(ricochet, folder):
     path = run(ricochet, folder, ring("multipliers: true", 3))
     with h5py.File(path) as file:
         assert file["orbits/multipliers"].dtype == np.complex128
@@ -54,8 +52,7 @@ def multipliers_are_complex_numbers_with_an_axis(ricochet, folder):
     ricochet("show", path, "--verify", cwd=folder).expect_done()
 
 
-@test
-def multipliers_come_in_reciprocal_and_conjugate_pairs(ricochet, folder):
+def test_multipliers_come_in_reciprocal_and_conjugate_pairs(ricochet, folder):
     found = read(run(ricochet, folder, ring("multipliers: true")))
     mu = found["multipliers"]
     assert np.allclose(found["multiplier_max"], np.abs(mu).max(axis=1), rtol=1e-14)
@@ -67,8 +64,7 @@ def multipliers_come_in_reciprocal_and_conjugate_pairs(ricochet, folder):
     assert np.allclose(np.prod(mu, axis=1), 1, atol=1e-8)
 
 
-@test
-def the_verdict_changes_at_the_critical_parameter(ricochet, folder):
+def test_the_verdict_changes_at_the_critical_parameter(ricochet, folder):
     path = run(ricochet, folder, ring("multipliers: true, special_points: true"))
     with h5py.File(path) as file:
         gammas = file["sweep/model.gamma"][()]
@@ -85,8 +81,7 @@ def the_verdict_changes_at_the_critical_parameter(ricochet, folder):
     assert special["multiplier"].dtype == np.complex128 and abs(special["multiplier"][0] - 1) < 1e-12
 
 
-@test
-def critical_parameters_stand_among_the_special_points(ricochet, folder):
+def test_critical_parameters_stand_among_the_special_points(ricochet, folder):
     """A range with resonances and singular points in it, along the coupling and along the period."""
     along_period = study(at_start="[14]", orbit="at_half: [15], stable: true, special_points: true", gamma="0.15",
                          sweep=sweep(60, 4, 5, "orbit.period"))
@@ -105,14 +100,12 @@ def critical_parameters_stand_among_the_special_points(ricochet, folder):
     assert set(plain["kind_words"]) <= {"resonance", "singular"} and "multiplier" not in plain
 
 
-@test
-def a_sweep_of_one_value_has_no_critical_parameter(ricochet, folder):
+def test_a_sweep_of_one_value_has_no_critical_parameter(ricochet, folder):
     one = ring("stable: true, special_points: true", 1, 0.1, 0.1)
     assert len(read(run(ricochet, folder, one), "special")["kind"]) == 0
 
 
-@test
-def the_verdict_is_the_same_with_and_without_the_multipliers(ricochet, folder):
+def test_the_verdict_is_the_same_with_and_without_the_multipliers(ricochet, folder):
     verdict = run(ricochet, folder, ring("stable: true"), name="verdict")
     both = run(ricochet, folder, ring("multipliers: true"), name="both")
     with h5py.File(verdict) as a, h5py.File(both) as b:
@@ -120,8 +113,7 @@ def the_verdict_is_the_same_with_and_without_the_multipliers(ricochet, folder):
             assert a["orbits"][name][()].tobytes() == b["orbits"][name][()].tobytes(), name
 
 
-@test
-def long_chains_have_verdicts_too(ricochet, folder):
+def test_long_chains_have_verdicts_too(ricochet, folder):
     """A localised orbit does not feel how long its ring is."""
     text = ring("stable: true, states: false", particles=1000).replace(sweep(39, 0, 0.19), "{parameter: model.gamma, "
                                                                        "values: [0.05, 0.1, 0.15, 0.17]}")
@@ -132,8 +124,7 @@ def long_chains_have_verdicts_too(ricochet, folder):
     assert found["multiplier_outside"].tolist() == short["multiplier_outside"].tolist() == [0, 0, 1, 1]
 
 
-@test
-def orbits_without_multipliers_are_unknown(ricochet, folder):
+def test_orbits_without_multipliers_are_unknown(ricochet, folder):
     """A grazing one, and patterns without an orbit."""
     grazing = study(at_start="[15]", orbit="multipliers: true", gamma=7 / 36)
     twice = "{parameter: 'orbit.at_start[1]', values: [1, 0]}"
@@ -146,8 +137,7 @@ def orbits_without_multipliers_are_unknown(ricochet, folder):
     assert found["stable_words"][0] != "unknown"
 
 
-@test
-def csv_and_show_have_complex_numbers(ricochet, folder):
+def test_csv_and_show_have_complex_numbers(ricochet, folder):
     path = run(ricochet, folder, ring("multipliers: true, special_points: true", 20, 0.1, 0.25))
     special = read(path, "special")
     rows = list(csv.DictReader(io.StringIO(ricochet("show", path, "--csv=special", cwd=folder).expect_done().out)))
@@ -160,8 +150,7 @@ def csv_and_show_have_complex_numbers(ricochet, folder):
     assert "stable" in table[0].split(",") and len(table) == 21
 
 
-@test
-def orbits_only_have_multipliers(ricochet, folder):
+def test_orbits_only_have_multipliers(ricochet, folder):
     text = trajectory().replace("start: {v: 2}", "orbit: {period: 4, at_start: [0], stable: true}")
     write(folder, "s.yaml", text)
     ricochet("check", "s.yaml", cwd=folder).expect_refused(USAGE, "s.yaml:3: orbit.stable is a key of kind: orbits")

@@ -8,7 +8,7 @@ import io
 import h5py
 import numpy as np
 import xarray
-from program import USAGE, study, sweep, test, trajectory, words_of, write
+from program import USAGE, study, sweep, trajectory, words_of, write
 
 SPEEDS = np.linspace(0.5, 3, 6)
 SPEED_SWEEP = sweep(6, 0.5, 3, "start.v")
@@ -40,8 +40,7 @@ def impact_times(speed, end):
     return np.arange(np.pi + phase, end, np.pi + 2 * phase)
 
 
-@test
-def impacts_meet_the_closed_form_in_every_task(ricochet, folder):
+def test_impacts_meet_the_closed_form_in_every_task(ricochet, folder):
     found = read(run(ricochet, folder, trajectory(duration=50, sweep=SPEED_SWEEP)))
     assert found["outcome_words"] == ["completed"] * 6
     for task, speed in enumerate(SPEEDS):
@@ -55,8 +54,7 @@ def impacts_meet_the_closed_form_in_every_task(ricochet, folder):
         assert set(impacts["impact_kind_words"]) <= {"transversal"} and set(impacts["impact_side_words"]) <= {"floor"}
 
 
-@test
-def offsets_count_the_impacts_of_tasks_with_very_different_numbers(ricochet, folder):
+def test_offsets_count_the_impacts_of_tasks_with_very_different_numbers(ricochet, folder):
     text = trajectory(3, start="v: [0.5, 1.5, 0.2]", model="wall: [null, null, 0.1]",
                       sweep="{parameter: time.duration, values: [1, 400, 3, 0.1, 90, 2000, 1, 7]}")
     found = read(run(ricochet, folder, text))
@@ -73,8 +71,7 @@ def offsets_count_the_impacts_of_tasks_with_very_different_numbers(ricochet, fol
         assert np.allclose(alone, impact_times(1.5, found["time"][task]), rtol=0, atol=1e-8)
 
 
-@test
-def samples_are_states_at_equal_times(ricochet, folder):
+def test_samples_are_states_at_equal_times(ricochet, folder):
     text = trajectory(2, start="q: [0.5, 0], v: [0.5, 2]", duration="10 pi", time="samples: 101")
     found = read(run(ricochet, folder, text))
     t = found["t"][0]
@@ -90,8 +87,7 @@ def samples_are_states_at_equal_times(ricochet, folder):
     assert found["steps"][0] > 0 and found["force_evaluations"][0] > 0
 
 
-@test
-def groups_open_in_xarray_with_their_axes(ricochet, folder):
+def test_groups_open_in_xarray_with_their_axes(ricochet, folder):
     path = run(ricochet, folder, trajectory(2, time="samples: 5", start="v: 2", sweep=SPEED_SWEEP))
     with xarray.open_dataset(path, engine="h5netcdf", group="trajectory") as opened:
         impacts = len(opened.impact_time)
@@ -103,8 +99,7 @@ def groups_open_in_xarray_with_their_axes(ricochet, folder):
         opened.load()
 
 
-@test
-def no_impact_at_all_is_an_empty_table(ricochet, folder):
+def test_no_impact_at_all_is_an_empty_table(ricochet, folder):
     for name, text in (("one", trajectory(start="v: 0.5")), ("many", trajectory(sweep=sweep(5, 0, 0.9, "start.v"))),
                        ("free", trajectory(floor="null", start="v: 9"))):
         path = run(ricochet, folder, text, name=name)
@@ -120,8 +115,7 @@ def no_impact_at_all_is_an_empty_table(ricochet, folder):
             ricochet("show", path, *words, cwd=folder).expect_done()
 
 
-@test
-def impacts_with_losses_end_in_rest(ricochet, folder):
+def test_impacts_with_losses_end_in_rest(ricochet, folder):
     """The floor lies above the equilibrium of the spring, which presses the particle onto it."""
     found = read(run(ricochet, folder, trajectory(floor=0.5, model="restitution: 0.5", start="q: 1")))
     events, impacts = share(found, 0, "event"), share(found, 0)
@@ -136,8 +130,7 @@ def impacts_with_losses_end_in_rest(ricochet, folder):
         assert events["event_time"][task] <= events["event_accumulation"][task] <= rests
 
 
-@test
-def restitution_can_be_given_per_particle(ricochet, folder):
+def test_restitution_can_be_given_per_particle(ricochet, folder):
     text = trajectory(2, model="restitution: [1, 0.5]", start="v: [2, 1.5]", duration=5)
     found = read(run(ricochet, folder, text))
     impacts = share(found, 0)
@@ -149,8 +142,7 @@ def restitution_can_be_given_per_particle(ricochet, folder):
 # --- outcomes ---
 
 
-@test
-def a_start_below_its_floor_is_a_row_of_a_sweep(ricochet, folder):
+def test_a_start_below_its_floor_is_a_row_of_a_sweep(ricochet, folder):
     path = run(ricochet, folder, trajectory(sweep="{parameter: start.q, values: [0, -1.5, 0.5]}"))
     found = read(path)
     assert found["outcome_words"] == ["completed", "refused", "completed"]
@@ -159,15 +151,13 @@ def a_start_below_its_floor_is_a_row_of_a_sweep(ricochet, folder):
     assert found["impact_offset"][1] == found["impact_offset"][2]
 
 
-@test
-def a_start_below_its_floor_is_refused_alone(ricochet, folder):
+def test_a_start_below_its_floor_is_refused_alone(ricochet, folder):
     write(folder, "s.yaml", trajectory(start="q: -1.5"))
     for command in ("check", "run"):
         ricochet(command, "s.yaml", cwd=folder).expect_refused(USAGE, "s.yaml: ")
 
 
-@test
-def too_many_events_end_a_trajectory(ricochet, folder):
+def test_too_many_events_end_a_trajectory(ricochet, folder):
     found = read(run(ricochet, folder, trajectory(duration=200, time="events_per_time: 0.01, samples: 201")))
     assert found["outcome_words"] == ["event_limit"] and found["reason"][0]
     reached = found["t"][0] <= found["time"][0]
@@ -182,8 +172,7 @@ time: {duration: 5.25 pi, samples: 8}
 """
 
 
-@test
-def a_trajectory_that_starts_on_an_orbit_follows_it(ricochet, folder):
+def test_a_trajectory_that_starts_on_an_orbit_follows_it(ricochet, folder):
     """Three and a half periods from t = 0+ on: an impact after each period, and half a period from the start at last."""
     found = read(run(ricochet, folder, ON_ORBIT))
     orbit = read(run(ricochet, folder, study(3, gamma=0, at_start="[1]"), name="orbit"), "orbits")
@@ -195,8 +184,7 @@ def a_trajectory_that_starts_on_an_orbit_follows_it(ricochet, folder):
     assert np.allclose(impacts["impact_impulse"], orbit["impulse"][0, 0], rtol=0, atol=1e-9)
 
 
-@test
-def a_pattern_without_an_orbit_is_a_row_of_its_sweep(ricochet, folder):
+def test_a_pattern_without_an_orbit_is_a_row_of_its_sweep(ricochet, folder):
     text = ON_ORBIT.replace("[1]", "[0, 1]") + "sweep: {parameter: 'orbit.at_start[1]', values: [1, 0, 2]}\n"
     found = read(run(ricochet, folder, text))
     assert found["outcome_words"] == ["completed", "no_orbit", "completed"]
@@ -207,8 +195,7 @@ def a_pattern_without_an_orbit_is_a_row_of_its_sweep(ricochet, folder):
 # --- orbits that are verified ---
 
 
-@test
-def orbits_are_verified_when_the_study_asks_for_it(ricochet, folder):
+def test_orbits_are_verified_when_the_study_asks_for_it(ricochet, folder):
     path = run(ricochet, folder, study(at_start="[15]", orbit="verify: true", sweep=sweep(40, 0, 0.4)))
     orbits = read(path, "orbits")
     assert {"admissible", "inadmissible"} <= set(orbits["outcome_words"])
@@ -224,23 +211,20 @@ def orbits_are_verified_when_the_study_asks_for_it(ricochet, folder):
 # --- what is printed ---
 
 
-@test
-def check_tells_that_events_come_on_top(ricochet, folder):
+def test_check_tells_that_events_come_on_top(ricochet, folder):
     write(folder, "s.yaml", trajectory(sweep=SPEED_SWEEP))
     assert "plus events" in ricochet("check", "s.yaml", cwd=folder).expect_done().out
     write(folder, "o.yaml", study())
     assert "plus events" not in ricochet("check", "o.yaml", cwd=folder).expect_done().out
 
 
-@test
-def sizes_beyond_the_machine_are_refused(ricochet, folder):
+def test_sizes_beyond_the_machine_are_refused(ricochet, folder):
     write(folder, "s.yaml", trajectory(1000000000, time="samples: 1000000000"))
     for command in ("check", "run"):
         ricochet(command, "s.yaml", cwd=folder).expect_refused(USAGE, "s.yaml:2: model.particles: ", "memory")
 
 
-@test
-def csv_of_impacts_tells_the_task(ricochet, folder):
+def test_csv_of_impacts_tells_the_task(ricochet, folder):
     path = run(ricochet, folder, trajectory(2, start="v: [2, 1.2]", sweep=sweep(9, 0.5, 3, "'start.v[0]'")))
     found = read(path)
     out = ricochet("show", path, "--csv=trajectory/impact_row", cwd=folder).expect_done().out
@@ -252,8 +236,7 @@ def csv_of_impacts_tells_the_task(ricochet, folder):
     ricochet("show", path, "--csv=trajectory/iterate", cwd=folder).expect_refused(USAGE, str(path), "iterate")
 
 
-@test
-def show_lists_every_table_of_a_trajectory(ricochet, folder):
+def test_show_lists_every_table_of_a_trajectory(ricochet, folder):
     path = run(ricochet, folder, trajectory(sweep=SPEED_SWEEP))
     out = ricochet("show", path, cwd=folder).expect_done().out
     for phrase in ("outcome: completed 6", "[task 6, sample 1001, particle 1]", "[task_edge 7]", "impact_kind:"):

@@ -1,33 +1,22 @@
 """Runs that are killed lose no more than what was being computed; --resume goes on with any number of ranks."""
 
-import functools
 import os
 import signal
-import sys
-import time
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "cli"))
 import program
-from program import assert_same, names, ranks_of, records, run_attributes, study, sweep, tasks_in, test
+from program import assert_same, names, ranks_of, records, run_attributes, study, sweep, tasks_in
 from program import wait_until, write
 
 TASKS = 300
-SLOW = study(particles=150000, at_start="[7]", orbit="states: false", sweep=sweep(TASKS))  # some 15 ms a task
+SLOW = study(particles=60000, at_start="[7]", orbit="states: false", sweep=sweep(TASKS))  # some 6 ms a task
 ENDLESS = SLOW.replace(f"points: {TASKS}", "points: 1000000")
 LARGE = study(particles=1000, at_start="[7]", sweep=sweep(10000))  # its result takes a while to write: 170 MB
 ANY_COMMAND = ("heap_checksums",)  # holds addresses, which move with the length of the command line
 
 
-@functools.cache
-def uninterrupted(ricochet):
-    write(ricochet.shared, "s.yaml", SLOW)
-    ricochet.run("s.yaml", cwd=ricochet.shared, ranks=2).expect_done()
-    return ricochet.shared / "s.h5"
-
-
 def expect_uninterrupted_result(ricochet, folder):
-    assert_same(uninterrupted(ricochet), folder / "s.h5", ANY_COMMAND)
+    assert_same(ricochet.result_of(SLOW), folder / "s.h5", ANY_COMMAND)
     assert names(folder) == ["s.h5", "s.yaml"], names(folder)
 
 
@@ -65,8 +54,7 @@ def interrupt_mpirun(run):
 WAYS = [kill_mpirun, kill_a_rank(1), kill_a_rank(0), terminate_mpirun, interrupt_mpirun]
 
 
-@test
-def however_runs_are_killed_no_finished_task_is_lost_or_computed_again(ricochet, folder):
+def test_however_runs_are_killed_no_finished_task_is_lost_or_computed_again(ricochet, folder):
     """Kill after kill, each run resumed with another number of ranks, and at once: ranks of the last may be alive. They
     go on for a second or two after mpirun is gone or told to end, so the study is one that never ends."""
     write(folder, "s.yaml", ENDLESS)
@@ -81,8 +69,7 @@ def however_runs_are_killed_no_finished_task_is_lost_or_computed_again(ricochet,
     assert len(finished) == len(set(finished)) >= 20 * len(WAYS)
 
 
-@test
-def killed_twice_and_resumed_the_result_is_that_of_an_uninterrupted_run(ricochet, folder):
+def test_killed_twice_and_resumed_the_result_is_that_of_an_uninterrupted_run(ricochet, folder):
     for kill in (kill_mpirun, kill_a_rank(0)):
         own = folder / kill.__name__
         own.mkdir()
@@ -99,8 +86,7 @@ def killed_twice_and_resumed_the_result_is_that_of_an_uninterrupted_run(ricochet
         expect_uninterrupted_result(ricochet, own)
 
 
-@test
-def what_a_kill_costs_is_the_chunks_at_hand(ricochet, folder):
+def test_what_a_kill_costs_is_the_chunks_at_hand(ricochet, folder):
     """Finished chunks are in the checkpoint at once, not only at the interval; chunks are small beside the study."""
     write(folder, "s.yaml", SLOW)
     run = start_and_wait_for(ricochet, folder, 60, 2, "--checkpoint", "1h")
@@ -128,35 +114,30 @@ def is_locked(folder):
     return False
 
 
-@test
-def a_killed_rank_ends_the_job_at_once(ricochet, folder):
+def test_a_killed_rank_ends_the_job_at_once(ricochet, folder):
     write(folder, "s.yaml", ENDLESS)
     for rank in (0, 1):
         run = start_and_wait_for(ricochet, folder, 5, 2, "--resume")
         kill_a_rank(rank)(run)
-        assert ricochet.end(run, limit=30).code != 0
+        assert ricochet.end(run).code != 0
     assert "s.h5" not in names(folder)
 
 
-@test
-def ranks_do_not_outlive_a_killed_mpirun_for_long(ricochet, folder):
+def test_ranks_do_not_outlive_a_killed_mpirun_for_long(ricochet, folder):
     write(folder, "s.yaml", ENDLESS)
     run = start_and_wait_for(ricochet, folder, 5, 2)
     assert is_locked(folder)
     kill_mpirun(run)
-    wait_until(lambda: not is_locked(folder), "the end of the ranks", limit=30)
+    wait_until(lambda: not is_locked(folder), "the end of the ranks")
 
 
-@test
-def a_single_process_leaves_with_the_code_of_its_signal_and_a_usable_checkpoint(ricochet, folder):
+def test_a_single_process_leaves_with_the_code_of_its_signal_and_a_usable_checkpoint(ricochet, folder):
     write(folder, "s.yaml", SLOW)
     for number in (signal.SIGTERM, signal.SIGINT, signal.SIGKILL):
         run = start_and_wait_for(ricochet, folder, 20, 0, "--resume")
         finished = finished_tasks(folder)
-        began = time.monotonic()
         run.send_signal(number)
         assert ricochet.end(run).code in (-number, 128 + number)
-        assert time.monotonic() - began < 5
         assert set(finished) <= set(finished_tasks(folder))
         assert "s.h5" not in names(folder)
     ricochet.run("s.yaml", "--resume", cwd=folder, ranks=2).expect_done()
@@ -171,8 +152,7 @@ def writing_since(folder):
         return 0
 
 
-@test
-def killed_while_it_writes_the_result_nothing_is_computed_again(ricochet, folder):
+def test_killed_while_it_writes_the_result_nothing_is_computed_again(ricochet, folder):
     write(folder, "s.yaml", LARGE)
     # A rank, not mpirun: without mpirun the ranks would live long enough to finish.
     for ranks, kill in [(2, kill_a_rank(0)), (2, kill_a_rank(1)), (0, lambda run: run.kill())]:
@@ -191,17 +171,12 @@ def killed_while_it_writes_the_result_nothing_is_computed_again(ricochet, folder
     ricochet("show", "s.h5", "--verify", cwd=folder).expect_done()
 
 
-@test
-def killed_after_the_result_is_there_resume_finds_it_and_clears_up(ricochet, folder):
+def test_killed_after_the_result_is_there_resume_finds_it_and_clears_up(ricochet, folder):
     """A kill between the result's name and the end of the checkpoint, made up from its two halves."""
     write(folder, "s.yaml", SLOW)
     run = start_and_wait_for(ricochet, folder, 5, 0)
     run.send_signal(signal.SIGUSR1)
     ricochet.end(run).expect(program.STOPPED)
-    (folder / "s.h5").write_bytes(uninterrupted(ricochet).read_bytes())
+    (folder / "s.h5").write_bytes(ricochet.result_of(SLOW).read_bytes())
     ricochet.run("s.yaml", "--resume", cwd=folder).expect_done()
     expect_uninterrupted_result(ricochet, folder)
-
-
-if __name__ == "__main__":
-    program.main()

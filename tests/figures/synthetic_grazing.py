@@ -46,12 +46,13 @@ def criterion(point, count=100):
     values, vectors = np.linalg.eig(point["L"])
     k = np.argmax(np.abs(values))
     size = values[k].real
+    along, across = point["eta"] @ vectors[:, k], np.linalg.inv(vectors)[k] @ point["xi"]
     return {
         "coefficient": np.array(c),
         "first_negative": negative[0] if negative else -1,
         "settled": -1 if negative else 2,
         "multiplier": complex(values[k]),
-        "alpha": np.nan if negative else ((point["eta"] @ vectors[:, k]) * (np.linalg.inv(vectors)[k] @ point["xi"])).real,
+        "alpha": np.nan if negative else (along * across).real,
         "verdict": "discontinuous" if negative else "continuous",
         "regime": "none" if negative else "chaos" if size > 2 / 3 else "windows" if size > 0.25 else "overlap",
     }
@@ -60,7 +61,8 @@ def criterion(point, count=100):
 def put_words(group, name, kinds, words):
     words = np.array(words, dtype=object)
     numbers = np.array([kinds.index(word) for word in words.ravel()], dtype="u1").reshape(words.shape)
-    group.create_dataset(name, data=numbers, dtype=h5py.enum_dtype({word: k for k, word in enumerate(kinds)}, basetype="u1"))
+    dtype = h5py.enum_dtype({word: k for k, word in enumerate(kinds)}, basetype="u1")
+    group.create_dataset(name, data=numbers, dtype=dtype)
 
 
 def put_windows(group, points, found, periods):
@@ -74,7 +76,8 @@ def put_windows(group, points, found, periods):
     exists = flip < border
     group["window_period"] = np.tile(periods, (len(points), 1))
     put_words(group, "window_exists", ["FALSE", "TRUE"], np.where(exists, "TRUE", "FALSE"))
-    group["window_low_d"], group["window_high_d"] = np.where(exists, flip * 1.01, np.nan), np.where(exists, border * 1.01, np.nan)
+    group["window_low_d"] = np.where(exists, flip * 1.01, np.nan)
+    group["window_high_d"] = np.where(exists, border * 1.01, np.nan)
     put_words(group, "window_low_kind", EDGES, np.where(exists, "flip", "none"))
     put_words(group, "window_high_kind", EDGES, np.where(exists, "border", "none"))
     group["predicted_border_d"], group["predicted_flip_d"] = border, flip

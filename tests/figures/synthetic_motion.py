@@ -19,11 +19,15 @@ class Ring:
         phase = 2 * np.pi * np.arange(particles // 2 + 1) / particles
         self.omega = np.sqrt(1 + 4 * gamma * np.sin(phase / 2) ** 2)
 
-    def moved(self, q, v, dt):
+    def course(self, q, v):
+        """Displacements after some time without impacts, as a function of it, one or several; and velocities."""
         a, b = np.fft.rfft(q), np.fft.rfft(v)
-        c, s = np.cos(self.omega * dt), np.sin(self.omega * dt)
+        angle = lambda dt: np.multiply.outer(dt, self.omega)  # noqa: E731
         back = lambda x: np.fft.irfft(x, self.particles)  # noqa: E731
-        return back(c * a + s / self.omega * b), back(c * b - s * self.omega * a)
+        return (
+            lambda dt: back(np.cos(angle(dt)) * a + np.sin(angle(dt)) / self.omega * b),
+            lambda dt: back(np.cos(angle(dt)) * b - np.sin(angle(dt)) * self.omega * a),
+        )
 
     def localised(self, period, particle, floor=-1.0):
         """Start of the orbit on which one particle hits its floor once per period."""
@@ -34,22 +38,22 @@ class Ring:
         return shape * floor / shape[particle], delta / 2 * floor / shape[particle]
 
 
-def first_gap(q, floor, wall):
-    return min(np.nanmin(np.append(q - floor, np.inf)), np.nanmin(np.append(wall - q, np.inf)))
+def is_inside(q, floor, wall):
+    """Whether any particle has passed its floor or wall; NaN stands for none."""
+    return ((q < floor) | (q > wall)).any(axis=-1)
 
 
-def next_impact(ring, q, v, dt, floor, wall):
+def next_impact(place, dt, floor, wall):
     """Time of the first penetration within dt, found in steps of a fifth and bisected; None without."""
-    low = 0.0
-    for high in np.linspace(0, dt, 6)[1:]:
-        if first_gap(ring.moved(q, v, high)[0], floor, wall) < 0:
-            for _ in range(50):
-                middle = 0.5 * (low + high)
-                inside = first_gap(ring.moved(q, v, middle)[0], floor, wall) < 0
-                low, high = (low, middle) if inside else (middle, high)
-            return low
-        low = high
-    return None
+    times = np.linspace(0, dt, 6)
+    inside = np.flatnonzero(is_inside(place(times[1:]), floor, wall))
+    if len(inside) == 0:
+        return None
+    low, high = times[inside[0]], times[inside[0] + 1]
+    for _ in range(50):
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if is_inside(place(middle), floor, wall) else (middle, high)
+    return low
 
 
 def reflect(t, q, v, floor, wall, restitution, impacts):
@@ -65,8 +69,9 @@ def move(ring, q, v, times, floor, wall, restitution=1.0):
     t = times[0]
     for target in times[1:]:
         while t < target:
-            dt = next_impact(ring, q, v, target - t, floor, wall)
-            q, v = ring.moved(q, v, target - t if dt is None else dt)
+            place, speed = ring.course(q, v)
+            dt = next_impact(place, target - t, floor, wall)
+            q, v = (of(target - t if dt is None else dt) for of in (place, speed))
             t = target if dt is None else t + dt
             if dt is not None:
                 reflect(t, q, v, floor, wall, restitution, impacts)

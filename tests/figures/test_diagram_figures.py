@@ -1,20 +1,8 @@
-#!/usr/bin/python3
-"""Runs the scripts that draw diagrams and basins on small studies: test_diagram_figures.py RICOCHET_BINARY SOURCE_DIR.
+"""Figures of diagrams and basins. Windows are also printed: these numbers are checked."""
 
-What a figure shows is for eyes; here it must exist, be large enough and not blank, and what the scripts cannot draw must
-end with one line and exit code 2. Windows are also printed: these numbers are checked.
-"""
-
-import os
-import sys
-import tempfile
-import traceback
-from concurrent.futures import ThreadPoolExecutor
-
-import h5py
 import numpy as np
-
-from test_figures import call, check_files, run_studies
+import pytest
+from drawing import Shelf, absent, assert_among, broken, cases, column, computed, draws, foreign, no_hdf5, refuses
 
 MAP = """kind: {kind}
 title: {title}
@@ -29,7 +17,7 @@ model: {{type: chain, particles: 1, ends: free, gamma: 0, floor: null, wall: 1, 
 iterate: {{{iterate}}}
 sweep: {sweep}
 """
-FAMILY = "orbit: {motion: forced}\nbranch: {parameter: model.force, from: 1, to: 50}"
+PUSHED = "orbit: {motion: forced}\nbranch: {parameter: model.force, from: 1, to: 50}"
 EXAMPLE = "lambda: 0.5, omega: 0.3"
 
 
@@ -45,12 +33,13 @@ OF_D = "{parameter: model.d, from: 1e-5, to: 0.03, points: 60, scale: log"
 STARTS = "{{parameter: 'iterate.start[{}]', from: -0.5, to: 0.5, points: 20}}"
 GRID = "{parameter: model.lambda, values: [0.3, 0.5]}\n  - {parameter: model.d, from: 1e-4, to: 0.03, points: 20}"
 SHORT = "transient: 500, keep: 100"
+TWO = "lambda: 0.1, omega: 0.05"  # two attractors
 
 STUDIES = {
     "plain": of_map("Figure 4", "transient: 2000, keep: 300, lyapunov: true, windows: true",
                     "{parameter: model.d, from: 5e-5, to: 0.03, points: 80}"),
     "ratios": of_map("Figure 5", "transient: 2000, keep: 300, windows: true", OF_D + "}"),
-    "back": of_map("there and back", SHORT + ", follow: true", OF_D + ", back: true}", "lambda: 0.1, omega: 0.05"),
+    "back": of_map("there and back", SHORT + ", follow: true", OF_D + ", back: true}", TWO),
     "falling": of_map("falling values", SHORT, "{parameter: model.d, values: [0.03, 0.02, 0.013, 0.001]}"),
     "one": of_map("a single value", SHORT, "{parameter: model.d, values: [0.02]}"),
     "grid": of_map("lines", SHORT + ", lyapunov: true", GRID),
@@ -63,16 +52,28 @@ STUDIES = {
                       "{parameter: model.lambda, from: 0.05, to: 0.95, points: 40}\n"
                       "  - {parameter: model.d, from: 1e-6, to: 0.1, points: 40, scale: log}", "omega: 0.04"),
     "basin": of_map("two attractors", "transient: 500, start: [0, 0, 0]",
-                    STARTS.format(0) + "\n  - " + STARTS.format(2), "lambda: 0.1, omega: 0.05, d: 0.0156", "basin"),
+                    STARTS.format(0) + "\n  - " + STARTS.format(2), TWO + ", d: 0.0156", "basin"),
     "basin_line": of_map("a line of starts", "transient: 500, start: [0, 0, 0]", STARTS.format(0),
-                         "lambda: 0.1, omega: 0.05, d: 0.0156", "basin"),
-    "beyond": of_oscillator("beyond grazing", "damping: 3, force: 1, frequency: 4", SHORT + ", lyapunov: true, windows: true",
-                            "{parameter: grazing.beyond, from: 1e-5, to: 1e-2, points: 24, scale: log}", FAMILY),
+                         TWO + ", d: 0.0156", "basin"),
+    "beyond": of_oscillator("beyond grazing", "damping: 3, force: 1, frequency: 4",
+                            SHORT + ", lyapunov: true, windows: true",
+                            "{parameter: grazing.beyond, from: 1e-5, to: 1e-2, points: 24, scale: log}", PUSHED),
     "impacts": of_oscillator("at impacts", "damping: 0.3, frequency: 2.5", SHORT + ", section: impact, states: true",
                              "{parameter: model.force, from: 6, to: 9, points: 8}"),
 }  # fmt: skip
 
-# script, study, options, endings of the stems that it writes
+FAILURES = ("failed", "diverged")
+MADE = {
+    "broken": broken("plain", "diagram", [0, 5, 6, 40, 79], FAILURES),
+    "nothing": broken("plain", "diagram", range(80), FAILURES),
+    "broken_beyond": broken("beyond", "diagram", [0, 7, 23], FAILURES),
+    "broken_periods": broken("periods", "diagram", range(100, 400), FAILURES),
+    "absent": absent,
+    "orbits": foreign("orbits/outcome"),
+    "text": no_hdf5,
+}
+
+# script, result, options, endings of the stems that it writes
 FIGURES = [
     ("plot_diagram.py", "plain", [], [""]),
     ("plot_diagram.py", "ratios", [], [""]),
@@ -125,58 +126,28 @@ REFUSALS = [
 ]
 
 
-def break_rows(source, target, rows):
-    """A copy in which some tasks failed or diverged: their numbers are NaN."""
-    with h5py.File(source, "r") as old, h5py.File(target, "w") as new:
-        for group in ("diagram", "sweep"):
-            old.copy(group, new)
-        new.attrs.update(old.attrs)
-        columns = new["diagram"]
-        kinds = h5py.check_enum_dtype(columns["outcome"].dtype)
-        for i, row in enumerate(rows):
-            columns["outcome"][row] = kinds[("failed", "diverged")[i % 2]]
-            for column in columns.values():
-                if column.dtype.kind == "f":
-                    column[row] = np.nan
-            columns["attractor_period"][row] = 0
+@pytest.fixture(scope="module")
+def results(ricochet, shared):
+    return Shelf(shared, computed(ricochet, STUDIES) | MADE)
 
 
-def make_files(folder):
-    at = lambda name: os.path.join(folder, name + ".h5")  # noqa: E731
-    break_rows(at("plain"), at("broken"), [0, 5, 6, 40, 79])
-    break_rows(at("plain"), at("nothing"), range(80))
-    break_rows(at("beyond"), at("broken_beyond"), [0, 7, 23])
-    break_rows(at("periods"), at("broken_periods"), range(100, 400))
-    with h5py.File(at("orbits"), "w") as file:
-        file["orbits/outcome"] = np.arange(3)
-    with open(at("text"), "w", encoding="utf-8") as file:
-        file.write("no HDF5\n")
+@pytest.mark.parametrize("script, name, options, endings", cases(FIGURES))
+def test_figure_is_drawn(scripts, results, folder, script, name, options, endings):
+    table = script == "plot_windows.py"
+    draws(scripts, results, folder, script, name, options, endings, suffix=".png", table=table)
 
 
-def figure_is_drawn(scripts, folder, script, name, options, endings):
-    stem = os.path.join(folder, "_".join([script[:-3], name] + [option.strip("-") for option in options]))
-    done = call(scripts, folder, script, name + ".h5", "-o", stem + ".png", *options)
-    assert done.returncode == 0 and done.stderr == "", f"exit {done.returncode}: {done.stderr}"
-    written = [stem + ending + suffix for ending in endings for suffix in (".png", ".svg")]
-    assert done.stdout.split()[-len(written) :] == written, done.stdout
-    for ending in endings:
-        check_files(stem + ending)
-        assert os.path.getsize(stem + ending + ".svg") < 2e6, "more points than a file should hold"
+@pytest.mark.parametrize("script, name, options, words", cases(REFUSALS))
+def test_refusal_is_one_line(scripts, results, folder, script, name, options, words):
+    refuses(scripts, results, folder, script, name, options, words)
 
 
-def refusal_is_one_line(scripts, folder, script, name, options, words):
-    done = call(scripts, folder, script, name, "-o", "refused", *options)
-    assert done.returncode == 2, f"exit {done.returncode}: {done.stderr}"
-    assert done.stderr.count("\n") == 1 and done.stderr.startswith(f"{script}: {name}: "), done.stderr
-    assert words in done.stderr, done.stderr
-    assert not [new for new in os.listdir(folder) if new.startswith("refused")]
-
-
-def table_has_the_exact_edges(scripts, folder):
-    """The flip and the border of the orbits with one impact of the example map, whose z1 does not depend on z2, z3."""
-    done = call(scripts, folder, "plot_windows.py", "plain.h5", "-o", os.path.join(folder, "table"))
-    assert done.returncode == 0 and done.stderr == "", done.stderr
-    lines = [line.split() for line in done.stdout.splitlines()]
+def test_table_has_the_exact_edges(scripts, results, folder):
+    """The flip and the border of the orbits with one impact of the example map, whose z1 does not depend on z2, z3. In
+    a process of its own."""
+    done = scripts.start("plot_windows.py", results["plain"], "-o", folder / "table", cwd=folder)
+    done.expect_files(folder / "table", table=True)
+    lines = [line.split() for line in done.out.splitlines()]
     rows = {int(words[0]): words for words in lines if words and words[0].isdigit()}
     for n in (5, 6, 7):
         c, size = 0.5 ** (n - 1), 0.5
@@ -187,29 +158,87 @@ def table_has_the_exact_edges(scripts, folder):
         assert abs(float(rows[n][5]) / high - 1) < 1e-8 and rows[n][6] == "border", rows[n]
 
 
-def passes(case):
-    check, *rest = case
-    try:
-        check(*rest)
-    except Exception:  # a test that breaks is a test that fails; the others still run
-        print(f"FAILED {check.__name__} {rest[2:]}\n{traceback.format_exc()}", flush=True)
-        return False
-    return True
+# --- numbers in figures ---
 
 
-def main():
-    binary, scripts = os.path.abspath(sys.argv[1]), os.path.abspath(os.path.join(sys.argv[2], "scripts"))
-    with tempfile.TemporaryDirectory() as folder:
-        run_studies(binary, folder, STUDIES)
-        make_files(folder)
-        cases = [(figure_is_drawn, scripts, folder, *case) for case in FIGURES]
-        cases += [(refusal_is_one_line, scripts, folder, *case) for case in REFUSALS]
-        cases.append((table_has_the_exact_edges, scripts, folder))
-        with ThreadPoolExecutor(2) as pool:
-            outcomes = list(pool.map(passes, cases))
-    print(f"{sum(outcomes)} of {len(outcomes)} passed")
-    return not all(outcomes)
+@pytest.mark.parametrize("name", ["falling", "listed"])
+def test_diagram_is_dark_where_iterates_are(scripts, results, name):
+    """In the cell of an iterate, and of periodic ones in its neighbours above and below; nowhere else."""
+    path = results[name]
+    (figure,) = scripts.look("plot_diagram.py", path)
+    mesh = figure.axes[0].collections[0]
+    corners = mesh.get_coordinates()
+    x, y = corners[0, :, 0], corners[:, 0, 1]
+    dark = ~np.ma.getmaskarray(mesh.get_array().reshape(len(y) - 1, len(x) - 1))
+    at, values = column(path, "sweep/model.d"), column(path, "diagram/values")
+    periodic = column(path, "diagram/attractor_period") > 0
+    assert len(x) == len(at) + 1 and periodic.any()
+    assert (np.searchsorted(x, np.sort(at)) == np.arange(1, len(x))).all()
+    for cells, task in zip(dark.T, np.argsort(at)):
+        filled = np.zeros(len(cells), bool)
+        row = np.searchsorted(y, values[task], side="right") - 1
+        if periodic[task]:
+            near = row[:, None] + [-1, 0, 1]
+        else:
+            near = 3 * (row[:, None] // 3) + [0, 1, 2]
+        filled[np.unique(near)] = True
+        assert (cells == filled).all(), task
 
 
-if __name__ == "__main__":
-    sys.exit(main())
+def test_diagram_has_the_exponents_of_its_line(scripts, results):
+    path = results["grid"]
+    (figure,) = scripts.look("plot_diagram.py", path, "--lines", "1")
+    panel = next(axes for axes in figure.axes if axes.get_ylabel().startswith("exponent"))
+    rows = slice(20, 40)
+    wanted = np.column_stack([column(path, "sweep/model.d"), column(path, "diagram/lyapunov")])[rows]
+    assert (panel.lines[0].get_xydata() == wanted).all()
+
+
+@pytest.mark.parametrize("options, pairs", [([], [(0, 1), (0, 2), (1, 2)]), (["--plane", "z3", "z1"], [(2, 0)])])
+def test_attractor_has_all_states(scripts, results, options, pairs):
+    path = results["attractor"]
+    (figure,) = scripts.look("plot_attractor.py", path, *options)
+    states = column(path, "diagram/state")[0]
+    assert states.shape == (2000, 3) and len(figure.axes) == len(pairs)
+    for axes, pair in zip(figure.axes, pairs):
+        assert (axes.lines[0].get_xydata() == states[:, pair]).all()
+
+
+def test_periods_are_those_of_the_grid(scripts, results):
+    """From 1 to 16 as they are, 17 is more, 18 none."""
+    path = results["periods"]
+    (figure,) = scripts.look("plot_periods.py", path)
+    period = column(path, "diagram/attractor_period")
+    assert set(column(path, "diagram/outcome")) == {"periodic", "aperiodic"}
+    wanted = np.where(period == 0, 18, np.minimum(period, 17)).reshape(40, 40).T
+    assert (figure.axes[0].collections[0].get_array().reshape(40, 40) == wanted).all()
+
+
+@pytest.mark.parametrize("options", [[], ["--swap"]], ids=["straight", "swap"])
+def test_basins_are_those_of_the_grid(scripts, results, options):
+    """Attractors by falling size."""
+    path = results["basin"]
+    (figure,) = scripts.look("plot_basin.py", path, *options)
+    attractor, sizes = column(path, "basin/attractor"), column(path, "basin/found_tasks")
+    rank = np.argsort(np.argsort(-sizes, kind="stable"))
+    assert len(sizes) > 1 and sizes.sum() == (attractor >= 0).sum()
+    wanted = np.where(attractor < 0, 7, rank[attractor]).reshape(20, 20)
+    assert (figure.axes[0].collections[0].get_array().reshape(20, 20) == (wanted if options else wanted.T)).all()
+    told = [text.get_text() for text in figure.axes[1].get_legend().get_texts()]
+    for size, text in zip(-np.sort(-sizes), told):
+        assert f"({100 * size / 400:.3g} %)" in text
+
+
+def test_windows_have_the_edges_of_the_table(scripts, results):
+    path = results["ratios"]
+    (figure,) = scripts.look("plot_windows.py", path)
+    upper = next(axes for axes in figure.axes if axes.get_yscale() == "log")
+    period, impacts = column(path, "window/period"), column(path, "window/impacts")
+    for side, marker in (("low", "v"), ("high", "^")):
+        edge, kind = column(path, f"window/{side}"), column(path, f"window/{side}_kind")
+        (shown,) = [line.get_xydata() for line in upper.lines if line.get_marker() == marker and line.get_zorder() == 3]
+        shown = shown[np.isfinite(shown[:, 1])]
+        assert len(shown) > 3 and len(set(shown[:, 0])) == len(shown)
+        located = (impacts == 1) & np.isfinite(edge) & ~np.isin(kind, ("open", "regular", "none"))
+        assert_among(shown, period[located], edge[located])
+        assert set(shown[:, 0]) == set(period[located])

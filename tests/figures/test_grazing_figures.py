@@ -1,22 +1,26 @@
-#!/usr/bin/python3
-"""Runs the scripts that draw grazing bifurcations on synthetic results: test_grazing_figures.py SOURCE_DIR.
+"""Figures of grazing bifurcations, of synthetic results of kind `grazing`."""
 
-What a figure shows is for eyes; here it must exist, be large enough and not blank, and what the scripts cannot
-draw must end with one line and exit code 2.
-"""
-
-import os
-import sys
-import tempfile
-import traceback
-
-import h5py
 import numpy as np
-
+import pytest
 import synthetic_grazing
-from test_figures import call, check_files
+from drawing import Shelf, absent, assert_among, cases, column, draws, foreign, refuses
 
-# script, file, options, endings of the stems that it writes
+
+def written(*words, **options):
+    return lambda shelf, path: synthetic_grazing.write(path, *words, **options)
+
+
+MADE = {
+    "regimes": written(3, [6, 4, 1.5]),
+    "light": written(0.1, [2, 2.6, 20], curve=np.linspace(0.4, 3, 301)),
+    "heavy": written(3, [4], curve=np.linspace(2, 6, 41)),
+    "alone": written(3, [4], periods=0),
+    "none": written(3, [4], outcomes=["none"]),
+    "absent": absent,
+    "orbits": foreign("orbits/outcome"),
+}
+
+# script, result, options, endings of the stems that it writes
 FIGURES = [
     ("plot_grazing.py", "regimes", [], ["_0", "_1", "_2"]),
     ("plot_grazing.py", "light", ["--tasks", "1", "2"], ["_1", "_2"]),
@@ -39,48 +43,63 @@ REFUSALS = [
 ]
 
 
-def make_results(folder):
-    path = lambda name: os.path.join(folder, name + ".h5")  # noqa: E731
-    synthetic_grazing.write(path("regimes"), 3, [6, 4, 1.5])
-    synthetic_grazing.write(path("light"), 0.1, [2, 2.6, 20], curve=np.linspace(0.4, 3, 301))
-    synthetic_grazing.write(path("heavy"), 3, [4], curve=np.linspace(2, 6, 41))
-    synthetic_grazing.write(path("alone"), 3, [4], periods=0)
-    synthetic_grazing.write(path("none"), 3, [4], outcomes=["none"])
-    with h5py.File(path("orbits"), "w") as file:
-        file["orbits/outcome"] = np.arange(3)
+@pytest.fixture(scope="module")
+def results(shared):
+    return Shelf(shared, MADE)
 
 
-def figure_is_drawn(scripts, folder, script, name, options, endings):
-    stem = os.path.join(folder, "_".join([script[:-3], name] + options[1:]))
-    done = call(scripts, folder, script, name + ".h5", "-o", stem, *options)
-    assert done.returncode == 0 and done.stderr == "", f"exit {done.returncode}: {done.stderr}"
-    assert done.stdout.split() == [stem + ending + suffix for ending in endings for suffix in (".png", ".svg")], done.stdout
-    for ending in endings:
-        check_files(stem + ending)
+@pytest.mark.parametrize("script, name, options, endings", cases(FIGURES))
+def test_figure_is_drawn(scripts, results, folder, script, name, options, endings):
+    draws(scripts, results, folder, script, name, options, endings)
 
 
-def refusal_is_one_line(scripts, folder, script, name, options, words):
-    done = call(scripts, folder, script, name, "-o", "refused", *options)
-    assert done.returncode == 2, f"exit {done.returncode}"
-    assert done.stderr.count("\n") == 1 and done.stderr.startswith(f"{script}: {name}: "), done.stderr
-    assert words in done.stderr, done.stderr
-    assert not [new for new in os.listdir(folder) if new.startswith("refused")]
+@pytest.mark.parametrize("script, name, options, words", cases(REFUSALS))
+def test_refusal_is_one_line(scripts, results, folder, script, name, options, words):
+    refuses(scripts, results, folder, script, name, options, words)
 
 
-def main():
-    scripts, failed = os.path.join(sys.argv[1], "scripts"), 0
-    with tempfile.TemporaryDirectory() as folder:
-        make_results(folder)
-        cases = [(figure_is_drawn, *case) for case in FIGURES] + [(refusal_is_one_line, *case) for case in REFUSALS]
-        for check, *case in cases:
-            try:
-                check(scripts, folder, *case)
-            except Exception:
-                failed += 1
-                print(f"{check.__name__} {case}\n{traceback.format_exc()}")
-    print(f"{len(cases) - failed} of {len(cases)} passed")
-    return failed > 0
+def test_default_name_stands_beside_the_result(scripts, results):
+    """As a process of its own."""
+    path = results["alone"]
+    scripts.start("plot_grazing.py", path, cwd="/").expect_files(path.with_name("alone_grazing"))
 
 
-if __name__ == "__main__":
-    sys.exit(main())
+# --- numbers in figures ---
+
+
+@pytest.mark.parametrize("task", [0, 1, 2])
+def test_criterion_has_the_coefficients_over_the_powers_of_the_multiplier(scripts, results, task):
+    path = results["regimes"]
+    (figure,) = scripts.look("plot_grazing.py", path, "--tasks", task)
+    right = figure.axes[2]
+    heads = next(marks.get_offsets() for marks in right.collections if len(marks.get_offsets()) > 1)
+    i, size = np.arange(len(heads)), np.abs(column(path, "grazing/multiplier")[task])
+    assert len(heads) == 13 and (heads[:, 0] == i).all()
+    assert np.allclose(heads[:, 1], column(path, "grazing/coefficient")[task, :13] / size**i, rtol=1e-12)
+    alpha = column(path, "grazing/alpha")[task]
+    assert any(set(line.get_ydata()) == {alpha} for line in right.lines)
+
+
+def test_windows_are_bars_between_their_edges(scripts, results):
+    path = results["regimes"]
+    (figure,) = scripts.look("plot_grazing_windows.py", path)
+    panels = [axes for axes in figure.axes if axes.get_ylabel() == "period $n$"]
+    names = ("period", "exists", "low_d", "high_d")
+    tasks = zip(*(column(path, f"grazing/window_{name}") for name in names))
+    shown = 0
+    for axes, (period, exists, low, high) in zip(panels, tasks):
+        bars = [line.get_xydata() for line in axes.lines if line.get_linewidth() == 7]
+        wanted = [[[a, n], [b, n]] for a, b, n in zip(low[exists], high[exists], period[exists])]
+        assert np.array(bars).tolist() == wanted
+        shown += len(bars)
+    assert len(panels) == 3 and shown > 10
+
+
+@pytest.mark.parametrize("name", ["light", "heavy"])
+def test_curve_goes_through_all_points(scripts, results, name):
+    path = results[name]
+    (figure,) = scripts.look("plot_grazing_curve.py", path)
+    wanted = np.column_stack([column(path, f"grazing/curve_{of}") for of in ("second", "parameter")])
+    drawn = [line.get_xydata() for line in figure.axes[0].lines if line.get_linewidth() == 3]
+    assert_among(wanted, *np.concatenate(drawn).T)
+    assert_among(np.concatenate(drawn), *wanted.T)

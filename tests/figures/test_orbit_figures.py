@@ -1,99 +1,29 @@
-#!/usr/bin/python3
-"""Runs the plotting scripts on small studies: test_figures.py RICOCHET_BINARY SOURCE_DIR.
+"""Figures of results of kind `orbits`: sweeps of every shape that the scripts take, and what they cannot draw."""
 
-What a figure shows is for eyes; here it must exist as a large PNG with something on it and as a well-formed
-SVG, for sweeps of every shape the scripts take, and what they cannot draw must end with one line and
-exit code 2.
-"""
-
-import os
-import subprocess
-import sys
-import tempfile
-import traceback
-import xml.etree.ElementTree
-from concurrent.futures import ThreadPoolExecutor
-
-import h5py
-import matplotlib.image
 import numpy as np
+import pytest
+from drawing import (
+    FAMILY, Shelf, absent, assert_among, beginning_of, broken, cases, column, computed, counts, draws, foreign, no_hdf5,
+    over_gamma, points, refuses, refuses_places, ring,
+)  # fmt: skip
 
-RING = """kind: orbits
-title: {title}
-model: {{type: chain, particles: 6, ends: periodic, gamma: 0.1, floor: -1}}
-orbit: {{period: 1.5 pi, at_start: [3]{orbit}}}
-sweep:
-{sweep}
-"""
-DRIVEN = """kind: trajectory
-title: driven between floor and wall
-model: {{type: chain, particles: {n}, ends: free, gamma: 0.1, stiffness: 0, damping: 0.1, floor: -1, wall: 1,
-        restitution: 0.8, force: {force}, frequency: 2.6}}
-start: {{v: 0}}
-time: {{duration: 100, samples: 2, lyapunov: true}}
-sweep: {{parameter: "model.force[0]", {sweep}}}
-"""
-GAMMA = "  - {{parameter: model.gamma, {}}}"
-
-
-def ring(title, sweep, orbit=""):
-    return RING.format(title=title, sweep=sweep, orbit=orbit)
-
+PERIODS = "  - {parameter: orbit.period, values: [6, 5.6, 5, 4.5, 4.2, 3.9, 3.4]}\n"
+GRID = PERIODS + over_gamma("from: 0, to: 0.6, points: 9")
+EXACT = "values: [0.18, 0.19, 0.194, 0.19444, 0.1944444, 0.1944444444444444444]"
 
 STUDIES = {
-    "family": ring("a family", GAMMA.format("from: 0, to: 0.19, points: 12")),
-    "poles": ring(
-        "costs 5 $ and 6 $", GAMMA.format("from: 0, to: 1.2, points: 121"), ", special_points: true"
-    ),
-    "falling": ring("falling values", GAMMA.format("values: [0.15, 0.1, 0.12, 0]")),
-    "one": ring("a single point", GAMMA.format("values: [0.1]")),
-    "logarithmic": ring("equal ratios", GAMMA.format("from: 1e-4, to: 0.1, points: 7, scale: log")),
-    "exact": ring(
-        "through gamma_c exactly",
-        GAMMA.format("values: [0.18, 0.19, 0.194, 0.19444, 0.1944444, " "0.1944444444444444444]"),
-    ),
-    "grid": ring(
-        "a grid",
-        "  - {parameter: orbit.period, values: [6, 5.6, 5, 4.5, 4.2, 3.9, 3.4]}\n"
-        + GAMMA.format("from: 0, to: 0.6, points: 9"),
-    ),
+    "family": FAMILY,
+    "poles": ring("costs 5 $ and 6 $", over_gamma("from: 0, to: 1.2, points: 121"), ", special_points: true"),
+    "falling": ring("falling values", over_gamma("values: [0.15, 0.1, 0.12, 0]")),
+    "one": ring("a single point", over_gamma("values: [0.1]")),
+    "logarithmic": ring("equal ratios", over_gamma("from: 1e-4, to: 0.1, points: 7, scale: log")),
+    "exact": ring("through gamma_c exactly", over_gamma(EXACT)),
+    "grid": ring("a grid", GRID),
     "stable": ring(
-        "multipliers", GAMMA.format("from: 0, to: 0.25, points: 51"), ", multipliers: true, special_points: true"
+        "multipliers", over_gamma("from: 0, to: 0.25, points: 51"), ", multipliers: true, special_points: true"
     ),
     "spread": ring("far from the circle", "", ", multipliers: true, at_half: [2]").replace("sweep:", ""),
-    "stable_grid": ring(
-        "stability",
-        "  - {parameter: orbit.period, values: [6, 5.6, 5, 4.5, 4.2, 3.9, 3.4]}\n"
-        + GAMMA.format("from: 0, to: 0.6, points: 9"),
-        ", stable: true",
-    ),
-    "exponents": DRIVEN.format(n=1, force="[7]", sweep="from: 7, to: 12, points: 6"),
-    "many_exponents": DRIVEN.format(n=4, force="[7, 0, 0, 0]", sweep="from: 7, to: 8, points: 3"),
-    "resting": DRIVEN.format(n=1, force="[7]", sweep="values: [7, 5.5, 4.5]")
-    .replace("stiffness: 0", "stiffness: 1")
-    .replace("wall: 1", "wall: null"),
-    "branch": """kind: branch
-title: through grazing
-model: {type: chain, particles: 1, ends: free, gamma: 0, floor: null, wall: 1, restitution: 0.8, damping: 0.1,
-        force: 0.05, frequency: 1}
-orbit: {motion: forced}
-branch: {parameter: model.force, from: 0.05, to: 0.2, cross: true}
-""",
-    "curves": """kind: branch
-title: grazing, a fold and a period doubling
-model: {type: chain, particles: 1, ends: free, gamma: 0, floor: null, wall: 1, restitution: 0.8, damping: 0.1,
-        force: 0.05, frequency: 1.1}
-orbit: {motion: forced}
-branch: {parameter: model.force, from: 0.05, to: 20, scale: log, cross: true,
-         trace: {parameter: model.frequency, low: 0.3, high: 3}}
-""",
-    "modes": """kind: branch
-title: two masses before a wall
-model: {type: duffing_chain, particles: 2, mass: 1, stiffness: [3, 1], cubic: [0, 0], wall: 2}
-orbit: {mode: 0}
-branch: {parameter: orbit.energy, from: 0.1, to: 3, step_most: 0.2, cross: true, samples: 31}
-sweep: {parameter: "model.cubic[1]", values: [0, 0.1, 0.2]}
-""",
+    "stable_grid": ring("stability", GRID, ", stable: true"),
     "ritz": """kind: orbits
 title: Ritz
 model: {type: duffing_chain, particles: 2, mass: 1, stiffness: [3, 1], cubic: [0, 0], wall: 2}
@@ -102,46 +32,7 @@ sweep:
   - {parameter: "model.cubic[1]", values: [0, 0.1]}
   - {parameter: orbit.functions, values: [2, 4, 8]}
 """,
-    "several_curves": """kind: branch
-title: grazing at several dampings, frequency followed
-model: {type: chain, particles: 1, ends: free, gamma: 0, floor: -1, restitution: 0.8, force: 0.3}
-orbit: {motion: forced}
-branch: {parameter: model.frequency, from: 0.6, to: 1.5,
-         trace: {parameter: model.force, low: 0.1, high: 2, first_low: 0.5}}
-sweep: {parameter: model.damping, values: [0.05, 0.1, 0.2]}
-""",
-    "branches": """kind: branch
-title: several stiffnesses
-model: {type: chain, particles: 4, ends: periodic, gamma: 0, floor: -1, hertz: 100}
-orbit: {period: 1.5 pi, at_start: [2]}
-branch: {parameter: model.gamma, from: 0, to: 0.15}
-sweep: {parameter: model.hertz, from: 100, to: 1e5, points: 9, scale: log}
-""",
-    "rigid_states": """kind: branch
-title: shapes under the impact law
-model: {type: chain, particles: 6, ends: periodic, gamma: 0, floor: -1}
-orbit: {period: 1.5 pi, at_start: [3]}
-branch: {parameter: model.gamma, from: 0, to: 0.19, states: true}
-""",
-    "soft_states": """kind: branch
-title: shapes under Hertz's law
-model: {type: chain, particles: 6, ends: periodic, gamma: 0, floor: -1, hertz: 100}
-orbit: {period: 1.5 pi, at_start: [3]}
-branch: {parameter: model.gamma, from: 0, to: 0.15, states: true}
-""",
-    "logarithmic_branch": """kind: branch
-title: along the logarithm, without multipliers
-model: {type: chain, particles: 4, ends: periodic, gamma: 0.1, floor: -1}
-orbit: {period: 1.5 pi, at_start: [2]}
-branch: {parameter: model.hertz, from: 100, to: 1e5, scale: log, multipliers: false}
-""",
-    "unborn": """kind: branch
-title: none begins
-model: {type: chain, particles: 2, ends: periodic, gamma: 0, floor: null, cubic: 1}
-orbit: {period: 7, excited: [0]}
-branch: {parameter: model.gamma, from: 0, to: 0.1}
-""",
-    "stateless": ring("no states", GAMMA.format("from: 0, to: 0.19, points: 3"), ", states: false"),
+    "stateless": ring("no states", over_gamma("from: 0, to: 0.19, points: 3"), ", states: false"),
     "floors": """kind: orbits
 title: the floor of one particle
 model: {type: chain, particles: 5, ends: free, gamma: 0.1, floor: [-1, -1, null, -1, -1]}
@@ -155,7 +46,19 @@ sweep:
 """,
 }
 
-# script, study, options
+FAILURES = ("failed", "singular", "not_converged", "resonant")
+MADE = {
+    "broken": broken("poles", "orbits", [0, 5, 6, 40, 41, 80, 120], FAILURES),
+    "nothing": broken("falling", "orbits", range(4), FAILURES),
+    "broken_stable": broken("stable", "orbits", [0, 7, 20, 50], FAILURES),
+    "broken_grid": broken("grid", "orbits", [3, 20, 21, 62], FAILURES),
+    "absent": absent,
+    "text": no_hdf5,
+    "truncated": beginning_of("family"),
+    "foreign": foreign("numbers"),
+}
+
+# script, result, options
 FIGURES = [
     ("plot_modes.py", "family", []),
     ("plot_modes.py", "poles", ["--all", "--curves", "20"]),
@@ -171,218 +74,189 @@ FIGURES = [
     ("plot_sweep.py", "stateless", []),
     ("plot_sweep.py", "broken", []),
     ("plot_sweep.py", "nothing", []),
+    ("plot_sweep.py", "stable", []),
     ("plot_map.py", "grid", []),
     ("plot_map.py", "grid", ["--swap", "--quantity", "clearance"]),
     ("plot_map.py", "grid", ["--quantity", "none"]),
     ("plot_map.py", "broken_grid", []),
     ("plot_approach.py", "exact", []),
-    ("plot_sweep.py", "stable", []),
     ("plot_multipliers.py", "stable", []),
     ("plot_multipliers.py", "stable", ["--task", "40"]),
     ("plot_multipliers.py", "spread", []),
     ("plot_multipliers.py", "broken_stable", []),
     ("plot_stability.py", "stable_grid", []),
     ("plot_stability.py", "stable_grid", ["--all", "--swap"]),
-    ("plot_lyapunov.py", "exponents", []),
-    ("plot_lyapunov.py", "exponents", ["--task", "5"]),
-    ("plot_lyapunov.py", "many_exponents", []),
-    ("plot_lyapunov.py", "many_exponents", ["--task", "1"]),
-    ("plot_lyapunov.py", "resting", []),
-    ("plot_branch.py", "branch", []),
-    ("plot_branch.py", "branch", ["--y", "multiplier_max"]),
-    ("plot_branch.py", "branches", []),
-    ("plot_branch.py", "branches", ["--y", "amplitude", "--tasks", "0", "8"]),
-    ("plot_branch.py", "logarithmic_branch", ["--y", "period"]),
-    ("plot_laws.py", "soft_states", ["--impacts", "rigid_states.h5", "--couplings", "3"]),
-    ("plot_branch.py", "modes", ["--x", "amplitude", "--y", "frequency"]),
-    ("plot_frequency_energy.py", "modes", []),
-    ("plot_frequency_energy.py", "modes", ["--tasks", "2", "--energy-high", "2", "--resonances"]),
-    ("plot_frequency_energy.py", "branch", []),
-    ("plot_manifold.py", "modes", []),
-    ("plot_manifold.py", "modes", ["--task", "2", "--axes", "q0", "q1", "v1", "--energy-high", "2"]),
-    ("plot_motions.py", "modes", []),
     ("plot_ritz.py", "ritz", []),
     ("plot_ritz.py", "ritz", ["--stalled", "ritz.h5"]),
-    ("plot_motions.py", "modes", ["--task", "1", "--points", "0", "7", "--plane", "q1", "v1"]),
-    ("plot_curves.py", "curves", []),
-    ("plot_curves.py", "several_curves", []),
-    ("plot_curves.py", "several_curves", ["--tasks", "1"]),
 ]
 
-# script, file, words of the message
+# script, file, options, words of the message
+NOT_ASKED = "in it (the study did not ask for orbit."
 REFUSALS = [
-    ("plot_modes.py", "absent.h5", "no such file"),
-    ("plot_sweep.py", "text.h5", "not a readable result"),
-    ("plot_map.py", "truncated.h5", "not a readable result"),
-    ("plot_approach.py", "foreign.h5", "not a result of kind orbits"),
-    ("plot_map.py", "family.h5", "1 swept parameters (model.gamma), this figure needs 2"),
-    ("plot_sweep.py", "grid.h5", "2 swept parameters (orbit.period, model.gamma), this figure needs 1"),
-    ("plot_modes.py", "stateless.h5", "no /orbits/q"),
-    ("plot_approach.py", "family.h5", "0 tasks with the outcome grazing"),
-    ("plot_multipliers.py", "family.h5", "no /orbits/multipliers in it (the study did not ask for orbit.multipliers)"),
-    ("plot_stability.py", "grid.h5", "no /orbits/stable in it (the study did not ask for orbit.stable)"),
-    ("plot_stability.py", "stable.h5", "1 swept parameters (model.gamma), this figure needs 2"),
-    ("plot_lyapunov.py", "family.h5", "not a result of kind trajectory"),
-    ("plot_branch.py", "family.h5", "not a result of kind branch"),
-    ("plot_laws.py", "family.h5", "not a branch with branch.states: true"),
-    ("plot_laws.py", "branches.h5", "not a branch with branch.states: true"),
-    ("plot_branch.py", "unborn.h5", "no branch of it begins (failed_start)"),
-    ("plot_frequency_energy.py", "family.h5", "not a result of kind branch"),
-    ("plot_manifold.py", "branch.h5", "no /branch/point_history_q in it (the study did not ask for branch.samples)"),
-    ("plot_motions.py", "unborn.h5", "no /branch/point_history_q in it"),
-    ("plot_curves.py", "family.h5", "not a result of kind branch"),
-    ("plot_ritz.py", "family.h5", "not a result of kind orbits with method: ritz"),
-    ("plot_curves.py", "branch.h5", "no /branch/curve_special in it (the study did not ask for branch.trace)"),
+    ("plot_modes.py", "absent.h5", [], "no such file"),
+    ("plot_sweep.py", "text.h5", [], "not a readable result"),
+    ("plot_map.py", "truncated.h5", [], "not a readable result"),
+    ("plot_approach.py", "foreign.h5", [], "not a result of kind orbits"),
+    ("plot_map.py", "family.h5", [], "1 swept parameters (model.gamma), this figure needs 2"),
+    ("plot_sweep.py", "grid.h5", [], "2 swept parameters (orbit.period, model.gamma), this figure needs 1"),
+    ("plot_modes.py", "stateless.h5", [], "no /orbits/q"),
+    ("plot_approach.py", "family.h5", [], "0 tasks with the outcome grazing"),
+    ("plot_multipliers.py", "family.h5", [], f"no /orbits/multipliers {NOT_ASKED}multipliers)"),
+    ("plot_stability.py", "grid.h5", [], f"no /orbits/stable {NOT_ASKED}stable)"),
+    ("plot_stability.py", "stable.h5", [], "1 swept parameters (model.gamma), this figure needs 2"),
+    ("plot_ritz.py", "family.h5", [], "not a result of kind orbits with method: ritz"),
 ]
 
 
-def run_studies(binary, folder, studies):
-    for name, text in studies.items():
-        study = os.path.join(folder, name + ".yaml")
-        with open(study, "w", encoding="utf-8") as file:
-            file.write(text)
-        subprocess.run(
-            [binary, "run", study, "-o", os.path.join(folder, name + ".h5"), "--progress", "never"],
-            check=True,
-            capture_output=True,
-            timeout=60,
-        )
+@pytest.fixture(scope="module")
+def results(ricochet, shared):
+    return Shelf(shared, computed(ricochet, STUDIES) | MADE)
 
 
-def break_rows(source, target, rows):
-    """A copy in which some tasks failed: their numbers are NaN, as the program writes them."""
-    with h5py.File(source, "r") as old, h5py.File(target, "w") as new:
-        for group in ("orbits", "sweep", "special"):
-            if group in old:
-                old.copy(group, new)
-        for name in ("title", "study"):
-            new.attrs[name] = old.attrs[name]
-        orbits = new["orbits"]
-        kinds = h5py.check_enum_dtype(orbits["outcome"].dtype)
-        for i, row in enumerate(rows):
-            orbits["outcome"][row] = kinds[("failed", "singular", "not_converged", "resonant")[i % 4]]
-            for column in orbits.values():
-                if column.dtype.kind in "fc":
-                    column[row] = np.nan
+@pytest.mark.parametrize("script, name, options", cases(FIGURES))
+def test_figure_is_drawn(scripts, results, folder, script, name, options):
+    draws(scripts, results, folder, script, name, options)
 
 
-def make_files(folder):
-    at = lambda name: os.path.join(folder, name)  # noqa: E731
-    break_rows(at("poles.h5"), at("broken.h5"), [0, 5, 6, 40, 41, 80, 120])
-    break_rows(at("falling.h5"), at("nothing.h5"), range(4))
-    break_rows(at("stable.h5"), at("broken_stable.h5"), [0, 7, 20, 50])
-    break_rows(at("grid.h5"), at("broken_grid.h5"), [3, 20, 21, 62])
-    with open(at("text.h5"), "w", encoding="utf-8") as file:
-        file.write("no HDF5\n")
-    with open(at("family.h5"), "rb") as whole, open(at("truncated.h5"), "wb") as part:
-        part.write(whole.read(3000))
-    with h5py.File(at("foreign.h5"), "w") as file:
-        file["numbers"] = np.arange(3)
+@pytest.mark.parametrize("script, name, options, words", cases(REFUSALS))
+def test_refusal_is_one_line(scripts, results, folder, script, name, options, words):
+    refuses(scripts, results, folder, script, name, options, words)
 
 
-def call(scripts, folder, script, name, *options):
-    return subprocess.run(
-        [os.path.join(scripts, script), name, *options],
-        cwd=folder,
-        capture_output=True,
-        text=True,
-        timeout=60,
-    )
+def test_unwritable_output_is_one_line(scripts, results):
+    refuses_places(scripts, results, "plot_sweep.py", "family.h5")
 
 
-def check_files(stem):
-    with open(stem + ".png", "rb") as file:
-        assert file.read(8) == b"\x89PNG\r\n\x1a\n", "no PNG signature"
-    pixels = matplotlib.image.imread(stem + ".png")
-    assert pixels.shape[1] >= 1000, f"{pixels.shape[1]} pixels wide"
-    colours = len(np.unique((pixels[::3, ::3, :3] * 16).astype(int).reshape(-1, 3), axis=0))
-    assert colours >= 8, f"only {colours} colours: blank?"
-    border = np.concatenate([pixels[0], pixels[-1], pixels[:, 0], pixels[:, -1]])[:, :3]
-    assert (border == 1).all(), "something is cut off at the border"
-    root = xml.etree.ElementTree.parse(stem + ".svg").getroot()
-    assert root.tag.endswith("svg") and len(list(root.iter())) > 50, "an empty SVG"
+# --- as processes of their own ---
 
 
-def figure_is_drawn(scripts, folder, script, name, options):
-    stem = os.path.join(folder, "_".join([script[:-3], name] + [option.strip("-") for option in options]))
-    done = call(scripts, folder, script, name + ".h5", "-o", stem, *options)
-    assert done.returncode == 0 and done.stderr == "", f"exit {done.returncode}: {done.stderr}"
-    assert done.stdout.split() == [stem + ".png", stem + ".svg"], done.stdout
-    check_files(stem)
+def test_default_names_stand_beside_the_result(scripts, results):
+    path = results["family"]
+    scripts.start("plot_modes.py", path, cwd="/").expect_files(path.with_name("family_modes"))
 
 
-def default_names_stand_beside_the_result(scripts, folder):
-    done = call(scripts, "/", "plot_modes.py", os.path.join(folder, "family.h5"))
-    assert done.returncode == 0, done.stderr
-    check_files(os.path.join(folder, "family_modes"))
+def test_refusal_of_a_process_is_one_line(scripts, results):
+    cwd = results.folder_of("truncated.h5")
+    done = scripts.start("plot_map.py", "truncated.h5", "-o", "refused", cwd=cwd)
+    done.expect_refused("plot_map.py: truncated.h5: ", "not a readable result")
+    assert not list(cwd.glob("refused*"))
 
 
-def refusal_is_one_line(scripts, folder, script, name, words):
-    before = set(os.listdir(folder))
-    others = ["--impacts", "rigid_states.h5"] if script == "plot_laws.py" else []
-    done = call(scripts, folder, script, name, "-o", "refused_" + script, *others)
-    assert done.returncode == 2, f"exit {done.returncode}"
-    assert done.stderr.count("\n") == 1 and done.stderr.startswith(f"{script}: {name}: "), done.stderr
-    assert words in done.stderr, done.stderr
-    assert not [new for new in set(os.listdir(folder)) - before if new.startswith("refused_" + script)]
+# --- numbers in figures ---
 
 
-def unwritable_output_is_one_line(scripts, folder):
-    done = call(scripts, folder, "plot_sweep.py", "family.h5", "-o", "no/such/folder/figure")
-    assert (
-        done.returncode == 2 and done.stderr.count("\n") == 1 and "cannot write" in done.stderr
-    ), done.stderr
+def curves(axes):
+    """Displacements or velocities of each curve of plot_modes.py, and the parameters that colour them."""
+    lines = axes.collections[0]
+    return np.array(lines.get_segments())[:, :, 1], lines.get_array()
 
 
-def help_names_the_datasets(scripts, folder, script):
-    done = call(scripts, folder, script, "--help")
-    table = {
-        "plot_lyapunov.py": "trajectory/outcome",
-        "plot_branch.py": "branch/outcome",
-        "plot_curves.py": "branch/outcome",
-        "plot_frequency_energy.py": "branch/outcome",
-        "plot_manifold.py": "branch/point_history_q",
-        "plot_motions.py": "branch/point_history_q",
-        "plot_ritz.py": "orbits/ritz_functions",
-        "plot_laws.py": "branch/point_parameter",
-    }.get(script, "orbits/outcome")
-    assert (
-        done.returncode == 0 and f"/{table}" in done.stdout and "--output" in done.stdout
-    ), done.stdout
+def sound(path):
+    return np.isin(column(path, "orbits/outcome"), ("admissible", "grazing"))
 
 
-def cases(scripts, folder):
-    yield from ((figure_is_drawn, scripts, folder, *figure) for figure in FIGURES)
-    yield from ((refusal_is_one_line, scripts, folder, *refusal) for refusal in REFUSALS)
-    yield (default_names_stand_beside_the_result, scripts, folder)
-    yield (unwritable_output_is_one_line, scripts, folder)
-    for script in sorted({figure[0] for figure in FIGURES}):
-        yield (help_names_the_datasets, scripts, folder, script)
+def test_modes_are_the_states_of_admissible_orbits(scripts, results):
+    path = results["poles"]
+    (figure,) = scripts.look("plot_modes.py", path, "--curves", "200")
+    rows = np.flatnonzero(sound(path))
+    assert 10 < len(rows) < 121
+    for axes, name in zip(figure.axes, ("q", "v")):
+        states, at = curves(axes)
+        assert (states == column(path, f"orbits/{name}")[rows]).all()
+        assert (at == column(path, "sweep/model.gamma")[rows]).all()
 
 
-def passes(case):
-    test, _scripts, _folder, *rest = case
-    try:
-        test(*case[1:])
-    except Exception:  # a test that breaks is a test that fails; the others still run
-        print(f"FAILED {test.__name__} {rest}\n{traceback.format_exc()}", flush=True)
-        return False
-    return True
+def test_modes_are_thinned_evenly(scripts, results):
+    (figure,) = scripts.look("plot_modes.py", results["poles"], "--all", "--curves", "20")
+    finite = np.isfinite(column(results["poles"], "orbits/q")).all(axis=1)
+    at = column(results["poles"], "sweep/model.gamma")[finite]
+    shown = curves(figure.axes[0])[1]
+    assert len(shown) == 20 and shown[0] == at[0] and shown[-1] == at[-1] and np.ptp(np.diff(shown)) < 0.025
 
 
-def main():
-    if len(sys.argv) != 3:
-        print(__doc__.splitlines()[0], file=sys.stderr)
-        return 2
-    binary, scripts = os.path.abspath(sys.argv[1]), os.path.abspath(os.path.join(sys.argv[2], "scripts"))
-    with tempfile.TemporaryDirectory() as folder:
-        run_studies(binary, folder, STUDIES)
-        make_files(folder)
-        with ThreadPoolExecutor(2) as pool:
-            outcomes = list(pool.map(passes, cases(scripts, folder)))
-    print(f"{sum(outcomes)} passed, {len(outcomes) - sum(outcomes)} failed")
-    return 0 if all(outcomes) else 1
+@pytest.mark.parametrize("name", ["family", "falling", "broken"])
+def test_sweep_has_every_task_that_has_numbers(scripts, results, name):
+    path = results[name]
+    (figure,) = scripts.look("plot_sweep.py", path)
+    panels = {axes.get_ylabel(): axes for axes in figure.axes}
+    at = column(path, "sweep/model.gamma")
+    for label, data in (("impulse", "impulse"), ("energy", "energy"), ("smallest gap", "clearance")):
+        values = column(path, f"orbits/{data}").reshape(len(at))
+        known = np.isfinite(values)
+        drawn = points(panels[label])
+        assert_among(np.column_stack([at, values])[known], *drawn.T)
+        assert_among(drawn, at[known], values[known])
 
 
-if __name__ == "__main__":
-    sys.exit(main())
+def test_sweep_counts_the_outcomes(scripts, results):
+    (figure,) = scripts.look("plot_sweep.py", results["broken"])
+    words = [text.get_text() for legend in figure.legends for text in legend.get_texts()]
+    words += [text.get_text() for axes in figure.axes if axes.get_legend() for text in axes.get_legend().get_texts()]
+    for outcome, count in counts(column(results["broken"], "orbits/outcome")).items():
+        if outcome != "inadmissible":  # told in two parts
+            assert f"{outcome.replace('_', ' ')} ({count})" in words, words
+
+
+def matrix(path, values):
+    """Over rising periods across and rising gamma upwards."""
+    period, gamma = column(path, "sweep/orbit.period"), column(path, "sweep/model.gamma")
+    return values[np.lexsort((period, gamma))]
+
+
+def test_map_has_the_outcomes_and_energies_of_the_grid(scripts, results):
+    path = results["grid"]
+    (figure,) = scripts.look("plot_map.py", path)
+    left, right = (axes.collections[0].get_array().ravel() for axes in figure.axes[:2])
+    outcome = column(path, "orbits/outcome")
+    assert len(left) == len(outcome) == 63
+    # One colour for each outcome, besides the inadmissible ones, which have two.
+    for word in set(outcome) - {"inadmissible"}:
+        where = matrix(path, outcome == word)
+        assert len(set(left[where])) == 1 and not set(left[where]) & set(left[~where]), word
+    energy = matrix(path, np.where(sound(path), column(path, "orbits/energy"), np.nan))
+    shown = np.ma.filled(right, np.nan)
+    assert np.isfinite(energy).sum() > 10 and np.array_equal(shown, energy, equal_nan=True)
+
+
+def test_stability_has_the_words_of_the_grid(scripts, results):
+    path = results["stable_grid"]
+    (figure,) = scripts.look("plot_stability.py", path, "--all")
+    left, right = (axes.collections[0].get_array().ravel() for axes in figure.axes[:2])
+    stable, largest = column(path, "orbits/stable"), column(path, "orbits/multiplier_max")
+    assert sorted(counts(left).values()) == sorted(counts(stable).values())
+    shown = matrix(path, np.where((stable == "unstable") & np.isfinite(largest), largest, np.nan))
+    assert np.array_equal(np.ma.filled(right, np.nan), shown, equal_nan=True)
+
+
+def test_multipliers_are_those_of_the_result(scripts, results):
+    path = results["stable"]
+    (figure,) = scripts.look("plot_multipliers.py", path, "--task", "40")
+    plane, modulus, argument = figure.axes[:3]
+    at, multipliers = column(path, "sweep/model.gamma"), column(path, "orbits/multipliers")
+    inside = multipliers[40][np.abs(multipliers[40]) <= plane.get_xlim()[1]]
+    drawn = np.concatenate([marks.get_offsets() for marks in plane.collections])
+    assert sorted(map(tuple, drawn.tolist())) == sorted(zip(inside.real.tolist(), inside.imag.tolist()))
+    known = np.isfinite(multipliers)
+    for axes, heights in ((modulus, np.abs(multipliers)), (argument, np.abs(np.angle(multipliers)) / np.pi)):
+        drawn = np.concatenate([np.ma.filled(marks.get_offsets(), np.nan) for marks in axes.collections[:6]])
+        assert len(drawn) == known.sum()
+        assert_among(drawn, np.repeat(at, multipliers.shape[1])[known.ravel()], heights[known])
+
+
+def test_approach_has_impulses_over_the_distance(scripts, results):
+    path = results["exact"]
+    (figure,) = scripts.look("plot_approach.py", path)
+    at, impulse = column(path, "sweep/model.gamma"), column(path, "orbits/impulse").reshape(-1)
+    assert (column(path, "orbits/outcome") == "grazing").tolist() == [False] * 5 + [True]
+    drawn = figure.axes[1].lines[0].get_xydata()
+    assert (drawn == np.column_stack([at[-1] - at[:-1], impulse[:-1]])).all()
+
+
+def test_ritz_has_the_errors_of_the_result(scripts, results):
+    path = results["ritz"]
+    (figure,) = scripts.look("plot_ritz.py", path)
+    functions = column(path, "orbits/ritz_functions")
+    for axes, name in zip(figure.axes, ("ritz_error", "ritz_error_v", "ritz_defect")):
+        lines = [line.get_xydata() for line in axes.lines if line.get_marker() != "None"]
+        assert [len(line) for line in lines] == [3, 3]
+        assert (np.concatenate(lines) == np.column_stack([functions, column(path, f"orbits/{name}")])).all()

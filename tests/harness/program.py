@@ -1,19 +1,14 @@
-"""What the end-to-end tests share: running the program and mpirun, temporary folders, comparing results.
+"""What the end-to-end tests share: running the program and mpirun, studies, folders, comparing results.
 
-A test is a function of (program, folder) marked with @test; its name states the property. The folder is empty and its
-own. A script is called as SCRIPT RICOCHET_BINARY SOURCE_DIR [TESTS...] and ends with program.main()."""
+A test takes the fixtures `ricochet`, the program, and `folder`, empty and its own (conftest.py); its name states the
+property."""
 
-import itertools
 import os
 import re
-import resource
-import shutil
 import signal
 import subprocess
-import sys
 import tempfile
 import time
-import traceback
 from pathlib import Path
 
 import h5py
@@ -21,9 +16,6 @@ import numpy as np
 
 LIMIT = 120  # seconds until a run counts as hanging; many times what the slowest one takes
 DONE, RUN, USAGE, FILES, STOPPED = 0, 1, 2, 3, 75
-
-_tests = []
-
 
 # Shipped grids that are made for pictures, with fewer points.
 COARSER = {"basin": {"[0]": 20, "[1]": 20}, "basin_oscillator": {"[0]": 5, "[1]": 5},
@@ -35,51 +27,6 @@ COARSER = {"basin": {"[0]": 20, "[1]": 20}, "basin_oscillator": {"[0]": 5, "[1]"
 def coarser(path):
     """Words of the command line that make a shipped study short."""
     return [word for entry, n in COARSER.get(path.stem, {}).items() for word in ("--set", f"sweep{entry}.points={n}")]
-
-
-class Skip(Exception):
-    """The machine does not allow this test."""
-
-
-def test(function):
-    _tests.append(function)
-    return function
-
-
-def main():
-    binary, source, *wanted = sys.argv[1:]
-    with tempfile.TemporaryDirectory(prefix="ricochet-") as shared:
-        _run_all(Program(Path(binary).resolve(), Path(source).resolve(), Path(shared)), wanted)
-
-
-def _run_all(program, wanted):
-    passed = failed = 0
-    for function in _tests:
-        if wanted and function.__name__ not in wanted:
-            continue
-        began = time.monotonic()
-        verdict = _run_one(function, program)
-        print(f"{verdict:7s} {function.__name__} ({time.monotonic() - began:.1f} s)", flush=True)
-        passed += verdict != "FAILED"
-        failed += verdict == "FAILED"
-    print(f"{passed} passed, {failed} failed")
-    sys.exit(failed > 0)
-
-
-def _run_one(function, program):
-    folder = Path(tempfile.mkdtemp(prefix="ricochet-"))
-    try:
-        function(program, folder)
-        return "passed"
-    except Skip as reason:
-        print(f"skipped: {reason}")
-        return "skipped"
-    except Exception:  # a test that breaks is a test that fails
-        traceback.print_exc(file=sys.stdout)
-        return "FAILED"
-    finally:
-        program.end_all()
-        shutil.rmtree(folder, ignore_errors=True)
 
 
 # --- running ---
@@ -127,17 +74,19 @@ def environment(extra=None):
 class Program:
     def __init__(self, binary, source, shared):
         self.binary = binary
-        self.shared = shared  # a folder that lasts as long as the script
         self.studies = source / "data" / "studies"
+        self._shared = shared  # a folder that lasts as long as the session
         self._running = []
-        self._sessions = itertools.count()
+        self._results = {}
+
+    def new_folder(self):
+        """An empty folder that lasts as long as the session."""
+        return Path(tempfile.mkdtemp(dir=self._shared))
 
     def _session(self):
         """A folder of its own for what Open MPI keeps of a run: runs that start together would otherwise race to make,
         and to remove, the one that they share."""
-        folder = self.shared / f"mpi{next(self._sessions)}"
-        folder.mkdir()
-        return {"OMPI_MCA_orte_tmpdir_base": str(folder)}
+        return {"OMPI_MCA_orte_tmpdir_base": str(self.new_folder())}
 
     def words(self, words, ranks=0, mpi=()):
         line = [str(self.binary), *map(str, words)]
@@ -176,6 +125,15 @@ class Program:
 
     def start_run(self, *words, cwd, **options):
         return self.start("run", *words, "--progress", "never", cwd=cwd, **options)
+
+    def result_of(self, text):
+        """The result of a study, computed once for all tests of the session, on two ranks without an interruption."""
+        if text not in self._results:
+            folder = self.new_folder()
+            write(folder, "s.yaml", text)
+            self.run("s.yaml", cwd=folder, ranks=2).expect_done()
+            self._results[text] = folder / "s.h5"
+        return self._results[text]
 
     def end_all(self):
         for process in self._running:
@@ -256,17 +214,20 @@ def sweep(points, low=0.0, high=0.187, parameter="model.gamma"):
 PART_HEADER, RECORD_HEADER = 160, 48  # bytes, as the program's checkpoint_files.h lays them out
 
 
-def records(folder):
-    """[(first task, number of tasks)] of every whole record in a checkpoint folder."""
-    found = []
-    for path in sorted(Path(folder).glob("part-*")):
-        data, at = path.read_bytes(), PART_HEADER
-        while at + RECORD_HEADER <= len(data):
-            _, first, count, size = np.frombuffer(data, "<u8", 4, at).tolist()
-            at += RECORD_HEADER + size
-            if at <= len(data):
-                found.append((first, count))
+def records_of(part):
+    """[(first task, number of tasks)] of every whole record in a file of a checkpoint."""
+    found, data, at = [], part.read_bytes(), PART_HEADER
+    while at + RECORD_HEADER <= len(data):
+        _, first, count, size = np.frombuffer(data, "<u8", 4, at).tolist()
+        at += RECORD_HEADER + size
+        if at <= len(data):
+            found.append((first, count))
     return found
+
+
+def records(folder):
+    """The same of all files in the folder of a checkpoint."""
+    return [record for path in sorted(Path(folder).glob("part-*")) for record in records_of(path)]
 
 
 def tasks_in(folder):

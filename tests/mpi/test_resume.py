@@ -1,14 +1,9 @@
 """Runs that are stopped on request go on with --resume; one output belongs to one run at a time."""
 
-import functools
 import os
 import signal
-import sys
 import time
-from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "cli"))
-import program
 from program import (
     FILES,
     STOPPED,
@@ -22,26 +17,18 @@ from program import (
     study,
     sweep,
     tasks_in,
-    test,
     wait_until,
     write,
 )
 
 TASKS = 200
-SLOW = study(particles=150000, at_start="[7]", orbit="states: false", sweep=sweep(TASKS))  # some 15 ms a task
+SLOW = study(particles=60000, at_start="[7]", orbit="states: false", sweep=sweep(TASKS))  # some 6 ms a task
 OTHER = SLOW.replace("at_start: [7]", "at_start: [8]")
 ANY_COMMAND = ("heap_checksums",)  # holds addresses, which move with the length of the command line
 
 
-@functools.cache
-def uninterrupted(ricochet):
-    write(ricochet.shared, "s.yaml", SLOW)
-    ricochet.run("s.yaml", cwd=ricochet.shared, ranks=2).expect_done()
-    return ricochet.shared / "s.h5"
-
-
 def expect_uninterrupted_result(ricochet, folder, output="s.h5"):
-    assert_same(uninterrupted(ricochet), folder / output, ANY_COMMAND)
+    assert_same(ricochet.result_of(SLOW), folder / output, ANY_COMMAND)
     assert names(folder) == sorted([output, "s.yaml"]), names(folder)
 
 
@@ -65,8 +52,7 @@ def tasks_in_message(result):
 # --- stops ---
 
 
-@test
-def sigusr1_stops_with_a_checkpoint_and_resume_computes_only_the_rest(ricochet, folder):
+def test_sigusr1_stops_with_a_checkpoint_and_resume_computes_only_the_rest(ricochet, folder):
     for ranks, more in [(0, 3), (3, 2)]:
         own = folder / str(ranks)
         own.mkdir()
@@ -80,8 +66,7 @@ def sigusr1_stops_with_a_checkpoint_and_resume_computes_only_the_rest(ricochet, 
         expect_uninterrupted_result(ricochet, own)
 
 
-@test
-def max_time_stops_on_any_number_of_ranks(ricochet, folder):
+def test_max_time_stops_on_any_number_of_ranks(ricochet, folder):
     write(folder, "s.yaml", SLOW.replace(f"points: {TASKS}", "points: 100000"))
     for ranks in (0, 2):
         result = ricochet.run("s.yaml", "--max-time", "1s", "--resume", cwd=folder, ranks=ranks)
@@ -89,8 +74,7 @@ def max_time_stops_on_any_number_of_ranks(ricochet, folder):
     assert names(folder) == ["s.h5.ckpt", "s.yaml"]
 
 
-@test
-def stop_after_stop_computes_every_task_once(ricochet, folder):
+def test_stop_after_stop_computes_every_task_once(ricochet, folder):
     write(folder, "s.yaml", SLOW)
     for ranks in (2, 3, 1):
         before = tasks_in(folder / "s.h5.ckpt")
@@ -104,24 +88,27 @@ def stop_after_stop_computes_every_task_once(ricochet, folder):
     expect_uninterrupted_result(ricochet, folder)
 
 
-@test
-def a_stop_is_quick_also_in_a_long_task(ricochet, folder):
-    """A dense orbit of the largest chain takes some seconds, unless the machine is fast; the stop comes within it."""
+def test_a_stop_is_quick_also_in_a_long_task(ricochet, folder):
+    """A dense orbit of the largest chain takes long; the stop comes within it, so that no task more is done than when
+    the signal was sent. (One that was just being recorded may be, but not each time.)"""
     write(folder, "s.yaml", study(particles=400, orbit="method: dense", sweep=sweep(50)))
-    run = ricochet.start_run("s.yaml", cwd=folder)
-    wait_until(lambda: list(folder.glob("s.h5.ckpt/part-*")), "the start of the tasks")
-    time.sleep(0.3)
-    began = time.monotonic()
-    run.send_signal(signal.SIGUSR1)
-    ricochet.end(run).expect(STOPPED)
-    assert time.monotonic() - began < 1, time.monotonic() - began
+    more = []
+    for i in range(5):
+        checkpoint = folder / f"{i}.h5.ckpt"
+        run = ricochet.start_run("s.yaml", "-o", f"{i}.h5", cwd=folder)
+        wait_until(lambda: tasks_in(checkpoint) > 0, "records")
+        run.send_signal(signal.SIGSTOP)  # the signal meets the run where it stands now
+        done = tasks_in(checkpoint)
+        run.send_signal(signal.SIGUSR1)
+        run.send_signal(signal.SIGCONT)
+        more.append(tasks_in_message(ricochet.end(run).expect(STOPPED)) - done)
+    assert set(more) <= {0, 1} and 0 in more, more
 
 
 # --- what --resume finds ---
 
 
-@test
-def resume_with_nothing_there_starts_from_the_beginning(ricochet, folder):
+def test_resume_with_nothing_there_starts_from_the_beginning(ricochet, folder):
     write(folder, "s.yaml", study(sweep=sweep(5)))
     ricochet.run("s.yaml", "--resume", cwd=folder, ranks=2).expect_done()
     run = run_attributes(folder / "s.h5")
@@ -129,8 +116,7 @@ def resume_with_nothing_there_starts_from_the_beginning(ricochet, folder):
     assert names(folder) == ["s.h5", "s.yaml"]
 
 
-@test
-def resume_of_a_finished_result_leaves_it_untouched(ricochet, folder):
+def test_resume_of_a_finished_result_leaves_it_untouched(ricochet, folder):
     write(folder, "s.yaml", study(sweep=sweep(5)))
     ricochet.run("s.yaml", cwd=folder).expect_done()
     before, bytes_before = os.stat(folder / "s.h5"), (folder / "s.h5").read_bytes()
@@ -143,16 +129,14 @@ def resume_of_a_finished_result_leaves_it_untouched(ricochet, folder):
     assert names(folder) == ["s.h5", "s.yaml"]
 
 
-@test
-def comments_and_layout_do_not_make_another_study(ricochet, folder):
+def test_comments_and_layout_do_not_make_another_study(ricochet, folder):
     done = tasks_in_message(stopped(ricochet, folder))
     write(folder, "s.yaml", "# a comment\n" + SLOW.replace("gamma: 0.1", "gamma: 1e-1"))
     again = ricochet.run("s.yaml", "--resume", "--max-time", "0.001s", cwd=folder).expect(STOPPED)
     assert tasks_in_message(again) >= done
 
 
-@test
-def the_result_of_another_study_is_refused_on_resume(ricochet, folder):
+def test_the_result_of_another_study_is_refused_on_resume(ricochet, folder):
     write(folder, "s.yaml", study(sweep=sweep(5)))
     ricochet.run("s.yaml", cwd=folder).expect_done()
     before = (folder / "s.h5").read_bytes()
@@ -161,8 +145,7 @@ def the_result_of_another_study_is_refused_on_resume(ricochet, folder):
     assert (folder / "s.h5").read_bytes() == before and names(folder) == ["s.h5", "s.yaml"]
 
 
-@test
-def the_checkpoint_of_another_study_is_refused_and_kept(ricochet, folder):
+def test_the_checkpoint_of_another_study_is_refused_and_kept(ricochet, folder):
     stopped(ricochet, folder)
     found = records(folder / "s.h5.ckpt")
     for text in (OTHER, SLOW.replace("points: 200", "points: 100"), SLOW.replace("states: false", "states: true")):
@@ -172,8 +155,7 @@ def the_checkpoint_of_another_study_is_refused_and_kept(ricochet, folder):
     assert records(folder / "s.h5.ckpt") == found
 
 
-@test
-def a_checkpoint_is_refused_without_resume_or_force_and_kept(ricochet, folder):
+def test_a_checkpoint_is_refused_without_resume_or_force_and_kept(ricochet, folder):
     stopped(ricochet, folder)
     found = records(folder / "s.h5.ckpt")
     for ranks in (0, 2):
@@ -182,8 +164,7 @@ def a_checkpoint_is_refused_without_resume_or_force_and_kept(ricochet, folder):
     assert records(folder / "s.h5.ckpt") == found
 
 
-@test
-def outputs_in_one_folder_do_not_disturb_each_other(ricochet, folder):
+def test_outputs_in_one_folder_do_not_disturb_each_other(ricochet, folder):
     stopped(ricochet, folder, output="a.h5")
     found = records(folder / "a.h5.ckpt")
     ricochet.run("s.yaml", "--set", "model.particles=30", "-o", "b.h5", cwd=folder, ranks=2).expect_done()
@@ -194,8 +175,7 @@ def outputs_in_one_folder_do_not_disturb_each_other(ricochet, folder):
 # --- --force ---
 
 
-@test
-def force_replaces_a_result_and_drops_a_checkpoint(ricochet, folder):
+def test_force_replaces_a_result_and_drops_a_checkpoint(ricochet, folder):
     stopped(ricochet, folder)
     write(folder, "s.h5", "no result at all")
     write(folder, "s.yaml", study(sweep=sweep(5)))
@@ -205,15 +185,13 @@ def force_replaces_a_result_and_drops_a_checkpoint(ricochet, folder):
     ricochet("show", "s.h5", "--verify", cwd=folder).expect_done()
 
 
-@test
-def the_old_result_stays_until_the_new_one_replaces_it(ricochet, folder):
+def test_the_old_result_stays_until_the_new_one_replaces_it(ricochet, folder):
     write(folder, "s.h5", "old")
     stopped(ricochet, folder, SLOW, "--force")
     assert (folder / "s.h5").read_text() == "old"
 
 
-@test
-def a_forced_run_that_was_stopped_goes_on_over_the_result_of_another_study(ricochet, folder):
+def test_a_forced_run_that_was_stopped_goes_on_over_the_result_of_another_study(ricochet, folder):
     """Its message promises that --resume goes on."""
     write(folder, "s.yaml", study(sweep=sweep(5)))
     ricochet.run("s.yaml", cwd=folder).expect_done()
@@ -223,9 +201,8 @@ def a_forced_run_that_was_stopped_goes_on_over_the_result_of_another_study(ricoc
     expect_uninterrupted_result(ricochet, folder)
 
 
-@test
-def a_forced_run_that_was_stopped_goes_on_over_the_result_of_the_same_study(ricochet, folder):
-    (folder / "s.h5").write_bytes(uninterrupted(ricochet).read_bytes())
+def test_a_forced_run_that_was_stopped_goes_on_over_the_result_of_the_same_study(ricochet, folder):
+    (folder / "s.h5").write_bytes(ricochet.result_of(SLOW).read_bytes())
     done = tasks_in_message(stopped(ricochet, folder, SLOW, "--force"))
     ricochet.run("s.yaml", "--resume", cwd=folder, ranks=2).expect_done()
     assert run_attributes(folder / "s.h5")["tasks_resumed"] == done
@@ -235,8 +212,7 @@ def a_forced_run_that_was_stopped_goes_on_over_the_result_of_the_same_study(rico
 # --- two runs on one output ---
 
 
-@test
-def a_second_run_is_refused_and_the_first_loses_nothing(ricochet, folder):
+def test_a_second_run_is_refused_and_the_first_loses_nothing(ricochet, folder):
     """The first is stopped while the second waits in vain, so that no speed matters."""
     write(folder, "s.yaml", SLOW)
     first = ricochet.start_run("s.yaml", cwd=folder)
@@ -248,17 +224,16 @@ def a_second_run_is_refused_and_the_first_loses_nothing(ricochet, folder):
     assert refused.code in (USAGE, FILES), refused
     refused.expect_line("s.h5.ckpt")
     ricochet.run("s.yaml", "--force", cwd=folder).expect_refused(FILES, "s.h5.ckpt/lock: ", "held by", holder)
-    began = time.monotonic()
-    ricochet.run("s.yaml", "--resume", cwd=folder, ranks=2).expect_refused(FILES, "s.h5.ckpt/lock: ", "held by", holder)
-    assert time.monotonic() - began >= 10
+    refused = ricochet.run("s.yaml", "--resume", cwd=folder, ranks=2)
+    refused.expect_refused(FILES, "s.h5.ckpt/lock: ", "held by", holder)
+    assert float(only(refused.err, r"waited ([\d.]+) s")) >= 10, refused
     assert records(folder / "s.h5.ckpt") == found
     first.send_signal(signal.SIGCONT)
     ricochet.end(first).expect_done()
     expect_uninterrupted_result(ricochet, folder)
 
 
-@test
-def a_run_beside_another_is_told_that_it_is_running(ricochet, folder):
+def test_a_run_beside_another_is_told_that_it_is_running(ricochet, folder):
     """To call the folder that of an unfinished run, and to advise --force, would be bad advice while it runs."""
     write(folder, "s.yaml", SLOW)
     first = ricochet.start_run("s.yaml", cwd=folder)
@@ -267,8 +242,7 @@ def a_run_beside_another_is_told_that_it_is_running(ricochet, folder):
     ricochet.run("s.yaml", cwd=folder).expect_line("s.h5.ckpt", "held by", f"process {first.pid}")
 
 
-@test
-def resume_waits_for_the_holder_to_leave(ricochet, folder):
+def test_resume_waits_for_the_holder_to_leave(ricochet, folder):
     write(folder, "s.yaml", SLOW)
     first = ricochet.start_run("s.yaml", cwd=folder, ranks=2)
     wait_until(lambda: tasks_in(folder / "s.h5.ckpt") >= 5, "records")
@@ -281,7 +255,3 @@ def resume_waits_for_the_holder_to_leave(ricochet, folder):
         os.kill(pid, signal.SIGKILL)
     ricochet.end(second).expect_done()
     expect_uninterrupted_result(ricochet, folder)
-
-
-if __name__ == "__main__":
-    program.main()

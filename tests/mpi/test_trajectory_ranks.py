@@ -1,15 +1,11 @@
 """Trajectories, whose tables of impacts are ragged, are the same for any number of ranks and however they are stopped."""
 
-import functools
 import signal
-import sys
-from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "cli"))
 import h5py
 import numpy as np
 import program
-from program import STOPPED, assert_same, names, run_attributes, tasks_in, test, trajectory, wait_until, write
+from program import STOPPED, assert_same, names, run_attributes, tasks_in, trajectory, wait_until, write
 
 ANY_COMMAND = ("heap_checksums",)  # holds addresses, which move with the length of the command line
 TASKS = 60
@@ -46,15 +42,13 @@ def assert_equal_for_all_ranks(ricochet, folder, text, counts=(1, 2, 3)):
         return file["trajectory/impact_offset"][()]
 
 
-@test
-def tasks_with_very_different_numbers_of_impacts_are_equal_for_all_ranks(ricochet, folder):
+def test_tasks_with_very_different_numbers_of_impacts_are_equal_for_all_ranks(ricochet, folder):
     text = trajectory(3, start="v: [0.5, 1.2, 3]", time="samples: 7", sweep=durations(200, 0.1, 500))
     offsets = assert_equal_for_all_ranks(ricochet, folder, text)
     assert np.diff(offsets).min() == 0 and np.diff(offsets).max() > 100
 
 
-@test
-def ragged_tables_of_many_chunks_are_equal_for_all_ranks(ricochet, folder):
+def test_ragged_tables_of_many_chunks_are_equal_for_all_ranks(ricochet, folder):
     """More impacts than the blocks of several ranks hold, and blocks that begin in the middle of tasks."""
     text = trajectory(10, start=speeds(10), time="samples: 2", sweep=durations(60, 100, 8000))
     offsets = assert_equal_for_all_ranks(ricochet, folder, text, (2, 3))
@@ -64,8 +58,7 @@ def ragged_tables_of_many_chunks_are_equal_for_all_ranks(ricochet, folder):
 EXPONENTS = trajectory(10, start=speeds(10), time="samples: 3, lyapunov: true", sweep=durations(TASKS, 20, 400))
 
 
-@test
-def exponents_are_equal_for_all_ranks_and_after_a_stop(ricochet, folder):
+def test_exponents_are_equal_for_all_ranks_and_after_a_stop(ricochet, folder):
     assert_equal_for_all_ranks(ricochet, folder, EXPONENTS, (1, 3))
     own = folder / "stopped"
     own.mkdir()
@@ -74,23 +67,14 @@ def exponents_are_equal_for_all_ranks_and_after_a_stop(ricochet, folder):
     assert_same(folder / "0" / "s.h5", own / "s.h5", ANY_COMMAND)
 
 
-@test
-def tables_without_any_impact_are_equal_for_all_ranks(ricochet, folder):
+def test_tables_without_any_impact_are_equal_for_all_ranks(ricochet, folder):
     text = trajectory(2, start="v: 0.5", sweep=durations(30, 1, 30))
     assert not assert_equal_for_all_ranks(ricochet, folder, text).any()
 
 
-@test
-def one_task_on_many_ranks_is_one_task(ricochet, folder):
+def test_one_task_on_many_ranks_is_one_task(ricochet, folder):
     offsets = assert_equal_for_all_ranks(ricochet, folder, trajectory(2, start="v: [1.5, 2]", duration=100), (1, 4))
     assert len(offsets) == 2 and offsets[1] > 40
-
-
-@functools.cache
-def uninterrupted(ricochet):
-    write(ricochet.shared, "s.yaml", SLOW)
-    ricochet.run("s.yaml", cwd=ricochet.shared, ranks=2).expect_done()
-    return ricochet.shared / "s.h5"
 
 
 def stopped(ricochet, folder, text=SLOW):
@@ -103,19 +87,17 @@ def stopped(ricochet, folder, text=SLOW):
     return tasks_in(folder / "s.h5.ckpt")
 
 
-@test
-def stopped_runs_resume_with_another_number_of_ranks(ricochet, folder):
+def test_stopped_runs_resume_with_another_number_of_ranks(ricochet, folder):
     done = stopped(ricochet, folder)
     assert 10 <= done < TASKS
     ricochet.run("s.yaml", "--resume", cwd=folder, ranks=3).expect_done()
     run = run_attributes(folder / "s.h5")
     assert run["tasks_resumed"] == done and run["tasks_computed"] == TASKS - done
-    assert_same(uninterrupted(ricochet), folder / "s.h5", ANY_COMMAND)
+    assert_same(ricochet.result_of(SLOW), folder / "s.h5", ANY_COMMAND)
     assert names(folder) == ["s.h5", "s.yaml"]
 
 
-@test
-def killed_runs_resume_to_the_same_result(ricochet, folder):
+def test_killed_runs_resume_to_the_same_result(ricochet, folder):
     write(folder, "s.yaml", SLOW)
     for ranks in (2, 3):
         before = tasks_in(folder / "s.h5.ckpt")
@@ -125,11 +107,10 @@ def killed_runs_resume_to_the_same_result(ricochet, folder):
             run.send_signal(signal.SIGKILL)
         ricochet.end(run)
     ricochet.run("s.yaml", "--resume", cwd=folder).expect_done()
-    assert_same(uninterrupted(ricochet), folder / "s.h5", ANY_COMMAND)
+    assert_same(ricochet.result_of(SLOW), folder / "s.h5", ANY_COMMAND)
 
 
-@test
-def damaged_and_torn_checkpoints_never_reach_the_result(ricochet, folder):
+def test_damaged_and_torn_checkpoints_never_reach_the_result(ricochet, folder):
     """Bits flipped in the counts of a record, in its rows, in its tails, and an end cut off."""
     stopped(ricochet, folder)
     kept = {path.name: path.read_bytes() for path in (folder / "s.h5.ckpt").glob("part-*")}
@@ -145,18 +126,13 @@ def damaged_and_torn_checkpoints_never_reach_the_result(ricochet, folder):
         for other, bytes_ in kept.items():
             write(own / "s.h5.ckpt", other, data if other == name else bytes_)
         ricochet.run("s.yaml", "--resume", cwd=own, ranks=2).expect_done()
-        assert_same(uninterrupted(ricochet), own / "s.h5", ANY_COMMAND)
+        assert_same(ricochet.result_of(SLOW), own / "s.h5", ANY_COMMAND)
         for path in own.iterdir():
             path.unlink()
         own.rmdir()
 
 
-@test
-def a_stop_is_quick_also_in_a_long_trajectory(ricochet, folder):
+def test_a_stop_is_quick_also_in_a_long_trajectory(ricochet, folder):
     write(folder, "s.yaml", trajectory(100, start=speeds(100), duration=1e6, time="samples: 2"))
     result = ricochet.run("s.yaml", "--max-time", "1s", cwd=folder, ranks=2, limit=20)
     result.expect(STOPPED).expect_line("s.h5: ", "--max-time", "0 of 1 tasks", "--resume")
-
-
-if __name__ == "__main__":
-    program.main()

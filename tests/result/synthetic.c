@@ -138,3 +138,13 @@ int synthetic_init(synthetic *s, const synthetic_size *size, int ranks) {
 void synthetic_clear(synthetic *s) {
   study_destroy(&s->study);
 }
+
+int synthetic_write(const char *path) {
+  synthetic s;
+  message why;
+  int code = synthetic_init(&s, &(synthetic_size){5, 4, 6, 0, 50, 300}, 1);
+  if (!code)
+    code = result_write(path, &s.header, s.tables, SYNTHETIC_TABLES, NULL, NULL, &why);
+  synthetic_clear(&s);
+  return code;
+}

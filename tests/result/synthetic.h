@@ -24,4 +24,7 @@ typedef struct synthetic {
 int synthetic_init(synthetic *s, const synthetic_size *size, int ranks);
 void synthetic_clear(synthetic *s);
 
+/** Writes a file of small tables from this process alone, without MPI. @returns 0 or an exit code */
+int synthetic_write(const char *path);
+
 #endif

@@ -3,6 +3,9 @@
 
 #include "result/result.h"
 #include "support.h"
+#include "synthetic.h"
+
+#define RESULT_FILE "to_be_damaged.h5"
 
 typedef struct bytes {
   unsigned char *at;
@@ -13,6 +16,8 @@ static bytes good;
 
 static int load(void **state) {
   (void)state;
+  if (synthetic_write(RESULT_FILE) != 0)
+    return -1;
   FILE *from = fopen(RESULT_FILE, "rb");
   if (!from || fseek(from, 0, SEEK_END) != 0)
     return -1;
@@ -26,7 +31,7 @@ static int load(void **state) {
 static int unload(void **state) {
   (void)state;
   free(good.at);
-  return unlink("damaged.h5");
+  return unlink("damaged.h5") || unlink(RESULT_FILE);
 }
 
 /* A file of the first `count` good bytes with bits of one byte flipped. */

@@ -1,14 +1,14 @@
-"""Reads the made-up results that 1, 2, 3 and 4 ranks wrote with h5py and xarray, neither with an option or a helper.
+"""Made-up results that 1, 2, 3 and 4 ranks write (result_ranks.c) are equal outside /run and open in h5py and xarray,
+neither with an option or a helper; failures are alike on every rank, and leave no file."""
 
-result_contents.py FILE...: asserts that all files are equal outside /run, that every axis hangs on a scale in the root
-group, that every data set has its checksum, and that xarray opens every group with the right dimensions.
-"""
 import math
-import sys
+import subprocess
 
 import h5py
 import numpy
+import pytest
 import xarray
+from program import environment, names
 
 VARY = {"/": {"file_time", "command"}}
 DIMENSIONS = {
@@ -104,19 +104,80 @@ def check_xarray(path):
         assert run.attrs["ranks"] >= 1 and run.attrs["tasks_computed"] == 20 and "host" in run.attrs
 
 
-def main(paths):
-    first = contents(paths[0])
+def write(build, path, *sizes, ranks, program="result_ranks"):
+    """The finished mpirun of a program that writes a made-up result."""
+    command = ["mpirun", "--quiet", "--oversubscribe", "-n", str(ranks), build / "bin" / program, path, *sizes]
+    return subprocess.run(list(map(str, command)), cwd=path.parent, env=environment(), capture_output=True, text=True,
+                          timeout=120)
+
+
+@pytest.fixture(scope="module")
+def written(build, ricochet):
+    """The same tables written by 1 to 4 ranks."""
+    folder = ricochet.new_folder()
+    paths = [folder / f"by_{ranks}.h5" for ranks in (1, 2, 3, 4)]
     for ranks, path in enumerate(paths, start=1):
+        done = write(build, path, ranks=ranks)
+        assert done.returncode == 0, done
+    return paths
+
+
+def test_any_number_of_ranks_writes_the_same(written):
+    first = contents(written[0])
+    assert len(first) > 100
+    for path in written[1:]:
         other = contents(path)
         assert first.keys() == other.keys(), first.keys() ^ other.keys()
         for key, value in first.items():
-            assert value == other[key], f"{path} differs from {paths[0]} in {key}"
+            assert value == other[key], f"{path} differs from {written[0]} in {key}"
+
+
+def test_values_axes_and_checksums_are_there(written):
+    for ranks, path in enumerate(written, start=1):
         with h5py.File(path) as file:
             check_data_sets(file)
             check_values(file)
             assert file["run"].attrs["ranks"] == ranks
+
+
+def test_xarray_opens_every_group_with_its_dimensions(written):
+    for path in written:
         check_xarray(path)
-    print(f"{len(first)} attributes and data sets equal in {len(paths)} files")
 
 
-main(sys.argv[1:])
+@pytest.mark.parametrize(
+    "sizes, ranks",
+    [((1, 3, 200000, 1, 0, 300), 2), ((2, 2, 3, 1, 0, 200000), 2), ((0, 0, 0, 0, 0, 0), 3)],
+    ids=["more columns than a chunk holds", "a study of more than 64 kB", "no sweep at all"],
+)
+def test_results_of_odd_sizes_are_written(build, folder, sizes, ranks):
+    done = write(build, folder / "a.h5", *sizes, ranks=ranks)
+    assert done.returncode == 0 and names(folder) == ["a.h5"], done
+
+
+@pytest.mark.parametrize("ranks", [1, 2, 3, 4])
+def test_writing_fails_alike_on_every_rank(build, folder, ranks):
+    """Every way in which it can fail: see result_failures.c."""
+    done = write(build, folder / "unused", ranks=ranks, program="result_failures")
+    assert done.returncode == 0, done
+
+
+@pytest.mark.parametrize(
+    "ranks, kilobytes, fits",
+    [(1, 4, False), (2, 100, None), (1, 300, None), (3, 400, None), (1, 430, None), (2, 4000, True)],
+)
+def test_a_full_disk_is_an_error_with_path_and_reason(build, folder, ranks, kilobytes, fits):
+    """A file system of this size; where `fits` is None, both ends are right."""
+    mount = ["mount", "-t", "tmpfs", "-o", f"size={kilobytes}k", "tmpfs", str(folder)]
+    if subprocess.run(mount, capture_output=True).returncode != 0:
+        pytest.skip("mounting is not permitted")
+    try:
+        done, left = write(build, folder / "a.h5", 30, 20, 30, 2, ranks=ranks), names(folder)
+    finally:
+        subprocess.run(["umount", "-l", str(folder)], check=True)
+    text = done.stdout + done.stderr
+    if done.returncode == 0:
+        assert fits is not False and left == ["a.h5"], left
+        return
+    assert fits is not True and done.returncode == 3 and left == [], (done.returncode, left, text)
+    assert f"{folder}/a.h5: cannot write" in text and "No space left on device" in text, text

@@ -4,6 +4,9 @@
 
 #include "result/result.h"
 #include "support.h"
+#include "synthetic.h"
+
+#define RESULT_FILE "to_be_shown.h5"
 
 static char printed[1 << 16];
 
@@ -120,6 +123,16 @@ static void failing_output_is_an_error(void **state) {
   assert_non_null(strstr(why.text, "cannot write to standard output"));
 }
 
+static int write_result(void **state) {
+  (void)state;
+  return synthetic_write(RESULT_FILE);
+}
+
+static int remove_result(void **state) {
+  (void)state;
+  return unlink(RESULT_FILE);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(show_names_the_study_and_its_sweeps),
@@ -130,5 +143,5 @@ int main(void) {
       cmocka_unit_test(csv_refuses_groups_without_columns),
       cmocka_unit_test(failing_output_is_an_error),
   };
-  return cmocka_run_group_tests(tests, NULL, NULL);
+  return cmocka_run_group_tests(tests, write_result, remove_result);
 }

@@ -3,16 +3,24 @@
 #include <stdbool.h>
 #include <stdlib.h>
 
+#include "run/ranks.h"
 #include "run/scheduler.h"
-#include "run/stop.h"
 #include "rank_checks.h"
 
 static int rank, ranks;
+static int fetches; /* of the counter, by this rank */
+
+/* MPI's profiling interface: this stands before the function of the same name. */
+int MPI_Fetch_and_op(const void *origin, void *result, MPI_Datatype type, int target, MPI_Aint place, MPI_Op op,
+                     MPI_Win window) {
+  fetches++;
+  return PMPI_Fetch_and_op(origin, result, type, target, place, op, window);
+}
 
 static scheduler *create(uint64_t items) {
   scheduler *s;
   message why = {""};
-  check(scheduler_create(MPI_COMM_WORLD, items, &s, &why) == 0);
+  check(scheduler_create(items, &s, &why) == 0);
   if (!s) {
     fprintf(stderr, "%s\n", why.text);
     MPI_Abort(MPI_COMM_WORLD, 1);
@@ -81,13 +89,14 @@ static void stop_reaches_every_rank(bool all_of_them_stop) {
   MPI_Barrier(MPI_COMM_WORLD);
   check(!scheduler_stopped(s));
   MPI_Barrier(MPI_COMM_WORLD);
-  const double began = clock_seconds();
   if (all_of_them_stop || rank == ranks - 1)
     for (int i = 0; i < 5; i++)
       scheduler_stop(s);
-  while (!scheduler_poll(s) && clock_seconds() - began < 5)
+  MPI_Barrier(MPI_COMM_WORLD);
+  fetches = 0;
+  while (!scheduler_poll(s))
     ;
-  check(clock_seconds() - began < 1); /* promised: 0.1 s, on a machine that has the time */
+  check(fetches <= 1); /* the first look at the counter after the stop finds it */
   check(scheduler_take(s, 10, &first) == 0);
   MPI_Barrier(MPI_COMM_WORLD);
   check(scheduler_stopped(s));
@@ -109,15 +118,15 @@ static void taking_after_a_stop_elsewhere_gives_nothing(void) {
 static void more_items_than_the_counter_can_hold_are_refused(void) {
   scheduler *s;
   message why;
-  check(scheduler_create(MPI_COMM_WORLD, UINT64_MAX, &s, &why) == EXIT_RUN && !s);
+  check(scheduler_create(UINT64_MAX, &s, &why) == EXIT_RUN && !s);
   s = create(UINT64_C(1000000000000));
   scheduler_destroy(&s);
 }
 
 int main(int argc, char **argv) {
-  MPI_Init(&argc, &argv);
-  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-  MPI_Comm_size(MPI_COMM_WORLD, &ranks);
+  ranks_start(&argc, &argv);
+  rank = ranks_rank();
+  ranks = ranks_count();
   every_item_is_handed_out_once(0, 1);
   every_item_is_handed_out_once(1, 1);
   every_item_is_handed_out_once(3, 100); /* fewer than ranks, and less than is wanted */

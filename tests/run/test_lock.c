@@ -7,9 +7,9 @@
 #include <time.h>
 
 #include "run/lock.h"
-#include "run/stop.h"
 
 enum { HOLD_FOREVER = -1 };
+static const double wait_forever = INFINITY; /* a test that waits where it should not never ends */
 
 static const char *output_folder(void **state) {
   static char folder[128];
@@ -72,17 +72,17 @@ static void second_taker_is_refused_and_told_the_holder(void **state) {
   assert_non_null(strstr(why.text, process));
   assert_non_null(strstr(why.text, host));
   assert_non_null(strstr(why.text, lock_path(state)));
-  assert_non_null(strstr(why.text, "waited 0."));
+  assert_non_null(strstr(why.text, "; waited "));
   finish(holder, SIGKILL);
 }
 
+/* It was held by the child, which alone can have let go of it. */
 static void taker_waits_for_a_holder_that_leaves(void **state) {
   lock *mine;
   message why;
   const pid_t holder = start_holder(output_folder(state), 0, 0.5, 0);
-  const double began = clock_seconds();
-  assert_int_equal(lock_take(output_folder(state), 10, &mine, &why), 0);
-  assert_close(clock_seconds() - began, 0.6, 0.4);
+  assert_int_equal(lock_take(output_folder(state), wait_forever, &mine, &why), 0);
+  assert_int_equal(lock_check(mine, &why), 0);
   lock_release(&mine, 1);
   finish(holder, 0);
 }
@@ -91,7 +91,7 @@ static void taker_follows_when_the_holder_removes_file_and_folder(void **state) 
   lock *mine;
   message why;
   const pid_t holder = start_holder(output_folder(state), 0, 0.3, 1);
-  assert_int_equal(lock_take(output_folder(state), 10, &mine, &why), 0);
+  assert_int_equal(lock_take(output_folder(state), wait_forever, &mine, &why), 0);
   assert_int_equal(lock_check(mine, &why), 0);
   lock_release(&mine, 1);
   finish(holder, 0);
@@ -161,18 +161,16 @@ static void what_waiting_cannot_mend_is_refused_at_once(void **state) {
   lock *mine;
   message why;
   char path[200], long_name[5000];
-  const double began = clock_seconds();
   snprintf(path, sizeof path, "%s/absent/out.h5.ckpt", (const char *)*state);
-  assert_int_equal(lock_take(path, 10, &mine, &why), EXIT_FILES);
+  assert_int_equal(lock_take(path, wait_forever, &mine, &why), EXIT_FILES);
   assert_non_null(strstr(why.text, path));
   snprintf(path, sizeof path, "%s/file", (const char *)*state);
   write_whole_file(path, "", 0);
-  assert_int_equal(lock_take(path, 10, &mine, &why), EXIT_FILES);
+  assert_int_equal(lock_take(path, wait_forever, &mine, &why), EXIT_FILES);
   assert_int_equal(lock_join(output_folder(state), 1, &mine, &why), EXIT_FILES);
   memset(long_name, 'x', sizeof long_name - 1);
   long_name[sizeof long_name - 1] = '\0';
-  assert_int_equal(lock_take(long_name, 10, &mine, &why), EXIT_FILES);
-  assert_true(clock_seconds() - began < 1);
+  assert_int_equal(lock_take(long_name, wait_forever, &mine, &why), EXIT_FILES);
 }
 
 #define lock_test(name) cmocka_unit_test_setup_teardown(name, make_temporary_folder, remove_temporary_folder)

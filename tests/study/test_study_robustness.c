@@ -1,7 +1,5 @@
 #include "study_cases.h"
 
-#include <time.h>
-
 /* Parses what may or may not be a study; a refusal must have a message that begins with the name. */
 static void parse_anything(const char *text, size_t length, const char *const *sets, size_t n_sets) {
   study *s = NULL;
@@ -80,10 +78,6 @@ static void mutated_sets_are_applied_or_refused(void **state) {
   }
 }
 
-static double seconds(void) {
-  return (double)clock() / CLOCKS_PER_SEC;
-}
-
 static char *repeated(const char *head, const char *unit, size_t count, const char *tail) {
   char *text = malloc(strlen(head) + count * strlen(unit) + strlen(tail) + 1);
   assert_non_null(text);
@@ -94,21 +88,24 @@ static char *repeated(const char *head, const char *unit, size_t count, const ch
   return text;
 }
 
-static void assert_refused_quickly(const char *head, const char *unit, size_t count, const char *phrase) {
+static void assert_repeated_is_refused(const char *head, const char *unit, size_t count, const char *phrase) {
   char *text = repeated(head, unit, count, "\n");
-  const double start = seconds();
   assert_refused(text, strlen(text), NULL, 0, "s.yaml:", phrase, "");
-  assert_true(seconds() - start < 5);
   free(text);
 }
 
-static void deep_nesting_is_refused_quickly(void **state) {
+/* Nearly as long as a study may be: with work in proportion to the square of the depth this would take hours. */
+static void assert_deep_is_refused(const char *head, const char *unit) {
+  assert_repeated_is_refused(head, unit, (STUDY_MAX_BYTES - 10) / strlen(unit), "nested deeper than 32");
+}
+
+static void deep_nesting_is_refused_at_any_length(void **state) {
   (void)state;
-  assert_refused_quickly("a: ", "[", 100000, "nested deeper than 32");
-  assert_refused_quickly("", "{a: ", 100000, "nested deeper than 32");
-  assert_refused_quickly("", "- ", 100000, "nested deeper than 32");
-  assert_refused_quickly("", "? ", 100000, "nested deeper than 32");
-  assert_refused_quickly("", "[\n", 100000, "nested deeper than 32");
+  assert_deep_is_refused("a: ", "[");
+  assert_deep_is_refused("", "{a: ");
+  assert_deep_is_refused("", "- ");
+  assert_deep_is_refused("", "? ");
+  assert_deep_is_refused("", "[\n");
   char *set = repeated("model.gamma=", "[", 100000, "");
   const char *sets[] = {set};
   assert_refused(base_study, strlen(base_study), sets, 1, "--set model.gamma=[[[", "nested deeper than 32", "");
@@ -117,7 +114,7 @@ static void deep_nesting_is_refused_quickly(void **state) {
 
 static void nesting_within_the_limit_is_read(void **state) {
   (void)state;
-  assert_refused_quickly("a: ", "[", 31, "not YAML");
+  assert_repeated_is_refused("a: ", "[", 31, "not YAML");
   char *text = repeated("title: ", "[", 31, "]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]\n");
   assert_refused(text, strlen(text), NULL, 0, "s.yaml:1: ", "title = a list", "");
   free(text);
@@ -125,7 +122,7 @@ static void nesting_within_the_limit_is_read(void **state) {
 
 static void large_texts_are_refused(void **state) {
   (void)state;
-  assert_refused_quickly("# ", "x", STUDY_MAX_BYTES, "bytes, expected at most");
+  assert_repeated_is_refused("# ", "x", STUDY_MAX_BYTES, "bytes, expected at most");
 }
 
 /* Backslashes stand once in single quotes and twice in the double quotes of the text written out. */
@@ -141,22 +138,21 @@ static void studies_that_outgrow_the_limit_with_their_sets_are_refused(void **st
   free(title);
 }
 
-static void large_mappings_and_sets_take_linear_time(void **state) {
+/* So many keys that comparing each with each would not end. */
+static void large_mappings_are_read_without_comparing_each_key_with_each(void **state) {
   (void)state;
-  enum { COUNT = 200000 };
+  enum { COUNT = 600000 };
   char *text = malloc(COUNT * 16);
   assert_non_null(text);
   char *end = text;
   for (int i = 0; i < COUNT; i++)
     end += sprintf(end, "k%d: 1\n", COUNT - i);
-  const double start = seconds();
-  assert_refused(text, strlen(text), NULL, 0, "s.yaml:1: ", "unknown key 'k200000'", "");
-  assert_true(seconds() - start < 5);
+  assert_refused(text, strlen(text), NULL, 0, "s.yaml:1: ", "unknown key 'k600000'", "");
   free(text);
 }
 
-/* A million floors and a hundred thousand impacts: reading stays near linear. */
-static void lists_of_a_million_elements_are_read_in_seconds(void **state) {
+/* A million floors and a hundred thousand impacts: more than near linear work would not end. */
+static void lists_of_a_million_elements_are_read(void **state) {
   (void)state;
   enum { COUNT = 1000000, HITS = 100000 };
   char *text = malloc(COUNT * 4 + HITS * 8 + 1000);
@@ -168,10 +164,7 @@ static void lists_of_a_million_elements_are_read_in_seconds(void **state) {
   for (int i = 0; i < HITS; i++)
     end += sprintf(end, "%s%d", i ? "," : "", COUNT - 1 - 7 * i);
   sprintf(end, "]\n");
-  const double start = seconds();
   study *s = parsed(text, NULL, 0);
-  assert_true(seconds() - start < 20); /* two seconds, but for sanitizers and busy machines */
-  print_message("read %zu bytes in %.2f s\n", strlen(text), seconds() - start);
   study_values *v = study_values_create(s);
   assert_int_equal(value_count(v, KEY_MODEL_FLOOR), COUNT);
   assert_true(value_number(v, KEY_ORBIT_AT_START, HITS - 1) == COUNT - 1 - 7 * (HITS - 1));
@@ -191,12 +184,12 @@ int main(void) {
       cmocka_unit_test(every_truncation_is_a_study_or_a_refusal),
       cmocka_unit_test(mutations_are_studies_or_refusals),
       cmocka_unit_test(mutated_sets_are_applied_or_refused),
-      cmocka_unit_test(deep_nesting_is_refused_quickly),
+      cmocka_unit_test(deep_nesting_is_refused_at_any_length),
       cmocka_unit_test(nesting_within_the_limit_is_read),
       cmocka_unit_test(large_texts_are_refused),
       cmocka_unit_test(studies_that_outgrow_the_limit_with_their_sets_are_refused),
-      cmocka_unit_test(large_mappings_and_sets_take_linear_time),
-      cmocka_unit_test(lists_of_a_million_elements_are_read_in_seconds),
+      cmocka_unit_test(large_mappings_are_read_without_comparing_each_key_with_each),
+      cmocka_unit_test(lists_of_a_million_elements_are_read),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

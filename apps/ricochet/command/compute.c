@@ -153,7 +153,7 @@ static int start(rank *r, const study *s, message *why) {
     code = checkpoint_begin(r->checkpoint, ranks_rank(), why);
   code = ranks_agree(code, why);
   if (!code)
-    code = ranks_agree(scheduler_create(MPI_COMM_WORLD, missing / r->unit, &r->scheduler, why), why);
+    code = ranks_agree(scheduler_create(missing / r->unit, &r->scheduler, why), why);
   return code;
 }
 

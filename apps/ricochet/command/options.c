@@ -42,6 +42,16 @@ static int read_progress(const char *text, progress_mode *mode, message *why) {
   return refuse(why, EXIT_USAGE, "--progress %s: expected auto, always or never", text);
 }
 
+static int read_mpi(const char *text, launcher_mode *mode, message *why) {
+  static const char *const words[] = {[LAUNCHER_AUTO] = "auto", [LAUNCHER_ON] = "on", [LAUNCHER_OFF] = "off"};
+  for (size_t i = 0; i < sizeof words / sizeof *words; i++)
+    if (strcmp(text, words[i]) == 0) {
+      *mode = (launcher_mode)i;
+      return 0;
+    }
+  return refuse(why, EXIT_USAGE, "--mpi %s: expected auto, on or off", text);
+}
+
 const char *refused_option(char **argv, char text[3]) {
   const char *word = argv[optind - 1];
   if (strncmp(word, "--", 2) == 0 || optopt == 0)
@@ -59,6 +69,7 @@ static const struct option run_long_options[] = {{"output", required_argument, N
                                                  {"checkpoint", required_argument, NULL, 'c'},
                                                  {"max-time", required_argument, NULL, 'm'},
                                                  {"progress", required_argument, NULL, 'p'},
+                                                 {"mpi", required_argument, NULL, 'i'},
                                                  {"help", no_argument, NULL, 'h'},
                                                  {NULL, 0, NULL, 0}};
 
@@ -82,6 +93,8 @@ static int take_option(run_options *o, int option, const char *argument, const c
     return read_duration("max-time", argument, &o->max_seconds, why);
   case 'p':
     return read_progress(argument, &o->progress, why);
+  case 'i':
+    return read_mpi(argument, &o->mpi, why);
   case 'h':
     o->help = true;
     return 0;

@@ -5,6 +5,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "../run/launcher.h"
 #include "../run/progress.h"
 #include "../study/message.h"
 
@@ -17,6 +18,7 @@ typedef struct run_options {
   double checkpoint_seconds; /* default 30 */
   double max_seconds;        /* INFINITY: no limit */
   progress_mode progress;
+  launcher_mode mpi; /* default LAUNCHER_AUTO */
 } run_options;
 
 /** Reads the arguments of `run`. @returns 0 or EXIT_USAGE. */

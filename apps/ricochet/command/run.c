@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "../result/result.h"
+#include "../run/launcher.h"
 #include "../run/ranks.h"
 #include "command.h"
 #include "compute.h"
@@ -24,6 +25,7 @@ static const char help[] =
     "  --checkpoint INTERVAL    how often finished tasks are synced to disk; default 30s\n"
     "  --max-time TIME          stops with a checkpoint after this time, for example 55m; exit code 75\n"
     "  --progress WHEN          auto (default), always or never\n"
+    "  --mpi WHEN               auto (default): on if mpirun or srun --mpi=pmix started this; on; off\n"
     "  -h, --help               this text\n"
     "\n"
     "Exit codes: 0 done (the last line counts the outcomes of the tasks), 1 the run cannot go on, 2 bad usage or\n"
@@ -330,6 +332,24 @@ static char *join_words(int argc, char **argv) {
   return line;
 }
 
+/* Starts MPI where it is due, also when the options were refused with `code`: one rank then says so for all.
+ * @param speaks  whether this process prints messages */
+static int start(run *r, int *argc, char ***argv, int code, bool *speaks, message *why) {
+  launcher_decision launched;
+  message refused;
+  r->began = clock_seconds();
+  stop_watch(r->options.max_seconds); /* before MPI starts, so that no signal is lost */
+  int not_launched = launcher_decide(r->options.mpi, &launched, &refused);
+  if (launched.parallel) {
+    ranks_start(argc, argv);
+    not_launched = launcher_check(ranks_count(), &refused);
+  }
+  *speaks = ranks_rank() == 0 && !launched.silent;
+  if (!code && not_launched)
+    *why = refused;
+  return code ? code : not_launched;
+}
+
 int command_run(int argc, char **argv) {
   run r = {0};
   message why;
@@ -342,12 +362,10 @@ int command_run(int argc, char **argv) {
     run_options_clear(&r.options);
     return finish_output(0);
   }
-  ranks_start(&argc, &argv);
-  r.began = clock_seconds();
-  stop_watch(r.options.max_seconds);
+  bool speaks;
+  code = start(&r, &argc, &argv, code, &speaks, &why);
   if (!code)
     code = run_study(&r, &why);
-  int speaks = ranks_rank() == 0;
   if (code && speaks)
     complain(code, &why); /* before a rank leaves with its code: mpirun then ends the others at once */
   ranks_finish();

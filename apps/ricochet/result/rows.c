@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../run/ranks.h"
 #include "data_set.h"
 #include "skeleton.h"
 
@@ -37,8 +38,10 @@ static int open_sets(table_writer *t, hid_t file) {
   int code = 0;
   const table *layout = t->from->layout;
   HDF5_TRY(t->at, t->transfer = H5Pcreate(H5P_DATASET_XFER), "write /%s", layout->group);
-  HDF5_TRY(t->at, H5Pset_dxpl_mpio(t->transfer, H5FD_MPIO_COLLECTIVE), "write /%s", layout->group);
-  HDF5_TRY(t->at, H5Pset_dxpl_mpio_collective_opt(t->transfer, H5FD_MPIO_INDIVIDUAL_IO), "write /%s", layout->group);
+  if (ranks_parallel()) {
+    HDF5_TRY(t->at, H5Pset_dxpl_mpio(t->transfer, H5FD_MPIO_COLLECTIVE), "write /%s", layout->group);
+    HDF5_TRY(t->at, H5Pset_dxpl_mpio_collective_opt(t->transfer, H5FD_MPIO_INDIVIDUAL_IO), "write /%s", layout->group);
+  }
   for (size_t k = 0; k < layout->column_count; k++) {
     const column *c = &layout->columns[k];
     char name[512];
@@ -112,13 +115,14 @@ static int write_table(const place *at, hid_t file, const result_table *from, in
 /* Every rank opens the file for itself, with the MPI-IO driver over itself alone. With all ranks in one communicator
  * HDF5 1.10 and MPI-IO hang for good when a write fails on one of them; with the default driver a file is open for
  * writing once only. No rank sees what another changes, which is sound because none changes metadata, and blocks never
- * share a chunk. */
+ * share a chunk. Without MPI there is one process, and the default driver serves. */
 int rows_write(const plan *p, const place *at, int rank, int ranks) {
   int code = 0;
   hid_t access = H5I_INVALID_HID, file = H5I_INVALID_HID;
   HDF5_TRY(at, access = skeleton_access(), "open it");
-  HDF5_TRY(at, H5Pset_fapl_mpio(access, MPI_COMM_SELF, MPI_INFO_NULL), "open it in parallel");
-  HDF5_TRY(at, file = H5Fopen(p->partial, H5F_ACC_RDWR, access), "open it in parallel");
+  if (ranks_parallel())
+    HDF5_TRY(at, H5Pset_fapl_mpio(access, MPI_COMM_SELF, MPI_INFO_NULL), "open it in parallel");
+  HDF5_TRY(at, file = H5Fopen(p->partial, H5F_ACC_RDWR, access), "open it");
   for (size_t i = 0; !code && i < p->table_count; i++)
     code = write_table(at, file, &p->tables[i], rank, ranks);
   if (!code)

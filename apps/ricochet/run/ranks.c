@@ -9,26 +9,38 @@ void ranks_start(int *argc, char ***argv) {
 }
 
 void ranks_finish(void) {
-  MPI_Finalize();
+  if (ranks_parallel())
+    MPI_Finalize();
+}
+
+bool ranks_parallel(void) {
+  int started; /* one of the few questions that MPI answers at any time */
+  MPI_Initialized(&started);
+  return started;
 }
 
 int ranks_rank(void) {
-  int rank;
-  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  int rank = 0;
+  if (ranks_parallel())
+    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
   return rank;
 }
 
 int ranks_count(void) {
-  int count;
-  MPI_Comm_size(MPI_COMM_WORLD, &count);
+  int count = 1;
+  if (ranks_parallel())
+    MPI_Comm_size(MPI_COMM_WORLD, &count);
   return count;
 }
 
 void ranks_barrier(void) {
-  MPI_Barrier(MPI_COMM_WORLD);
+  if (ranks_parallel())
+    MPI_Barrier(MPI_COMM_WORLD);
 }
 
 int ranks_agree(int code, message *why) {
+  if (!ranks_parallel())
+    return code;
   int mine = code ? ranks_rank() : INT_MAX, first;
   MPI_Allreduce(&mine, &first, 1, MPI_INT, MPI_MIN, MPI_COMM_WORLD);
   if (first == INT_MAX)
@@ -39,7 +51,8 @@ int ranks_agree(int code, message *why) {
 }
 
 void ranks_share(void *bytes, size_t size) {
-  MPI_Bcast(bytes, (int)size, MPI_BYTE, 0, MPI_COMM_WORLD);
+  if (ranks_parallel())
+    MPI_Bcast(bytes, (int)size, MPI_BYTE, 0, MPI_COMM_WORLD);
 }
 
 int ranks_share_text(char **text, size_t *length, message *why) {
@@ -54,11 +67,13 @@ int ranks_share_text(char **text, size_t *length, message *why) {
 }
 
 double ranks_max(double value) {
-  double largest;
-  MPI_Allreduce(&value, &largest, 1, MPI_DOUBLE, MPI_MAX, MPI_COMM_WORLD);
+  double largest = value;
+  if (ranks_parallel())
+    MPI_Allreduce(&value, &largest, 1, MPI_DOUBLE, MPI_MAX, MPI_COMM_WORLD);
   return largest;
 }
 
 void ranks_sum(uint64_t *values, size_t count) {
-  MPI_Allreduce(MPI_IN_PLACE, values, (int)count, MPI_UINT64_T, MPI_SUM, MPI_COMM_WORLD);
+  if (ranks_parallel())
+    MPI_Allreduce(MPI_IN_PLACE, values, (int)count, MPI_UINT64_T, MPI_SUM, MPI_COMM_WORLD);
 }

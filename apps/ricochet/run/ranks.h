@@ -1,17 +1,23 @@
 /* The ranks of a run as one program: start, agreement on failures, small reductions. All of MPI that commands need.
  *
- * Every function but ranks_rank and ranks_count is collective. MPI failures outside the scheduler and the result writer
- * end the job: there is nobody left to agree with. */
+ * A process that never started MPI is one rank among one, and everything here holds for it, too.
+ * Every function but ranks_rank, ranks_count and ranks_parallel is collective. MPI failures outside the scheduler and
+ * the result writer end the job: there is nobody left to agree with. */
 #ifndef RICOCHET_APP_RANKS_H
 #define RICOCHET_APP_RANKS_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
 #include "../study/message.h"
 
+/** Starts MPI. Without this call the process is alone. */
 void ranks_start(int *argc, char ***argv);
+/** Ends MPI if it was started. */
 void ranks_finish(void);
+/** Whether MPI was started. */
+bool ranks_parallel(void);
 int ranks_rank(void);
 int ranks_count(void);
 void ranks_barrier(void);

@@ -1,8 +1,10 @@
 #include "scheduler.h"
 
 #include <math.h>
+#include <mpi.h>
 #include <stdlib.h>
 
+#include "ranks.h"
 #include "stop.h"
 
 /* Half of what the poll promises to callers over TCP; an MPI_Iprobe costs about a microsecond. */
@@ -14,9 +16,11 @@ static const double chunk_seconds = 20e-3;
 static const double shortest_chunk_seconds = 10e-3;
 
 struct scheduler {
+  bool shared; /* between ranks of MPI; otherwise the counter is `own`, and the three below are unused */
   MPI_Comm comm;
   MPI_Win window;
   int64_t *counter; /* the window's memory: one number on rank 0, nothing elsewhere */
+  int64_t own;
   int rank, ranks;
   int64_t items;
   int64_t mark;  /* what a stop adds; the items asked for never add up to it */
@@ -63,30 +67,25 @@ static int open_window(scheduler *s, message *why) {
   return status == MPI_SUCCESS ? 0 : refuse_mpi(why, status, "cannot open the shared counter");
 }
 
-static int open_communicator(scheduler *s, MPI_Comm comm, uint64_t items, message *why) {
-  int status = MPI_Comm_rank(comm, &s->rank);
-  if (status == MPI_SUCCESS)
-    status = MPI_Comm_size(comm, &s->ranks);
-  if (status != MPI_SUCCESS)
-    return refuse_mpi(why, status, "cannot use the communicator");
-  const int code = set_limits(s, items, why);
-  if (code)
-    return code;
-  status = MPI_Comm_dup(comm, &s->comm);
+static int open_communicator(scheduler *s, message *why) {
+  int status = MPI_Comm_dup(MPI_COMM_WORLD, &s->comm);
   if (status == MPI_SUCCESS)
     status = MPI_Comm_set_errhandler(s->comm, MPI_ERRORS_RETURN);
   return status == MPI_SUCCESS ? 0 : refuse_mpi(why, status, "cannot duplicate the communicator");
 }
 
-int scheduler_create(MPI_Comm comm, uint64_t items, scheduler **out, message *why) {
+int scheduler_create(uint64_t items, scheduler **out, message *why) {
   *out = NULL;
   scheduler *s = calloc(1, sizeof *s);
   if (!s)
     return refuse(why, EXIT_RUN, "out of memory for the scheduler");
-  s->comm = MPI_COMM_NULL;
-  s->window = MPI_WIN_NULL;
-  int code = open_communicator(s, comm, items, why);
-  if (!code)
+  s->shared = ranks_parallel();
+  s->rank = ranks_rank();
+  s->ranks = ranks_count();
+  int code = set_limits(s, items, why);
+  if (!code && s->shared)
+    code = open_communicator(s, why);
+  if (!code && s->shared)
     code = open_window(s, why);
   if (code) {
     /* After a failure of MPI what it gave is left alone: freeing is collective and might wait for ever. */
@@ -100,9 +99,11 @@ int scheduler_create(MPI_Comm comm, uint64_t items, scheduler **out, message *wh
 void scheduler_destroy(scheduler **s) {
   if (!*s)
     return;
-  MPI_Win_unlock_all((*s)->window);
-  MPI_Win_free(&(*s)->window);
-  MPI_Comm_free(&(*s)->comm);
+  if ((*s)->shared) {
+    MPI_Win_unlock_all((*s)->window);
+    MPI_Win_free(&(*s)->window);
+    MPI_Comm_free(&(*s)->comm);
+  }
   free(*s);
   *s = NULL;
 }
@@ -113,13 +114,22 @@ static void fail(scheduler *s, int status, const char *what) {
   s->stopped = true;
 }
 
+/* @param before  the counter before `amount` was added to it. @returns a status of MPI */
+static int reach_counter(scheduler *s, int64_t amount, int64_t *before) {
+  if (!s->shared) {
+    *before = s->own;
+    s->own += amount;
+    return MPI_SUCCESS;
+  }
+  const int status = MPI_Fetch_and_op(&amount, before, MPI_INT64_T, 0, 0, amount ? MPI_SUM : MPI_NO_OP, s->window);
+  return status == MPI_SUCCESS ? MPI_Win_flush(0, s->window) : status;
+}
+
 /* Adds to the counter, or only looks at it when `amount` is 0, and keeps what it learns.
  * @returns the counter before, or the mark when MPI failed (which reads as "stopped"). */
 static int64_t fetch_and_add(scheduler *s, int64_t amount) {
   int64_t before = s->mark;
-  int status = MPI_Fetch_and_op(&amount, &before, MPI_INT64_T, 0, 0, amount ? MPI_SUM : MPI_NO_OP, s->window);
-  if (status == MPI_SUCCESS)
-    status = MPI_Win_flush(0, s->window);
+  const int status = reach_counter(s, amount, &before);
   if (status != MPI_SUCCESS) {
     fail(s, status, "cannot reach the shared counter");
     return s->mark;
@@ -156,6 +166,8 @@ uint64_t scheduler_next_size(const scheduler *s, uint64_t last_size, double last
 }
 
 bool scheduler_poll(scheduler *s) {
+  if (!s->shared)
+    return s->stopped;
   const double now = clock_seconds();
   if (now - s->progressed < progress_interval)
     return s->stopped;

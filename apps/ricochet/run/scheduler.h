@@ -1,8 +1,9 @@
-/* Hands out the tasks of a sweep to MPI ranks from a shared counter.
+/* Hands out the tasks of a sweep to the ranks from a shared counter.
  *
- * The counter lives on rank 0 in a one-sided window; a rank takes its next chunk by fetch-and-add, so uneven costs
- * balance themselves and no rank is lost to a master. Over TCP the counter moves only while its owner is inside MPI:
- * whoever computes for long calls scheduler_poll at least each millisecond.
+ * Without MPI the counter is a number of the one process. With it the counter lives on rank 0 in a one-sided window; a
+ * rank takes its next chunk by fetch-and-add, so uneven costs balance themselves and no rank is lost to a master. Over
+ * TCP the counter moves only while its owner is inside MPI: whoever computes for long calls scheduler_poll at least
+ * each millisecond.
  *
  * The only operations on the counter are additions and plain looks (MPI promises that concurrent operations are atomic
  * only when they are of one kind). A stop is therefore an addition too: of a mark larger than all the items that can
@@ -10,7 +11,6 @@
 #ifndef RICOCHET_APP_SCHEDULER_H
 #define RICOCHET_APP_SCHEDULER_H
 
-#include <mpi.h>
 #include <stdbool.h>
 #include <stdint.h>
 
@@ -18,11 +18,10 @@
 
 typedef struct scheduler scheduler;
 
-/** Collective.
- *  @param comm   duplicated; may be freed afterwards
+/** Collective over all ranks of the run (ranks.h).
  *  @param items  number of work items, numbered from 0; at most 2^63 / (ranks + 1) / (ranks + 2)
  *  @returns 0, or EXIT_RUN when MPI fails or the items are too many; *out is NULL then. */
-int scheduler_create(MPI_Comm comm, uint64_t items, scheduler **out, message *why);
+int scheduler_create(uint64_t items, scheduler **out, message *why);
 /** Collective. Takes &s, sets it NULL, accepts NULL. */
 void scheduler_destroy(scheduler **s);
 
