@@ -8,7 +8,7 @@
 #ifndef RICOCHET_CROSSINGS_H
 #define RICOCHET_CROSSINGS_H
 
-#include "lyapunov_course.h"
+#include "floquet/lyapunov_course.h"
 #include "ricochet/motion_section.h"
 
 enum { CROSSINGS_MOST = 64 };

@@ -10,7 +10,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "flow/vectorised.h"
+#include "numeric/vectorised.h"
 #include "ricochet/attractor.h"
 
 typedef struct map_block {

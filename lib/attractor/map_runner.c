@@ -8,7 +8,7 @@
 #include <gsl/gsl_errno.h>
 
 #include "map_block.h"
-#include "orthonormal.h"
+#include "numeric/orthonormal.h"
 #include "period.h"
 
 enum {

@@ -9,6 +9,7 @@
 #include "crossings.h"
 #include "impact/trajectory_state.h"
 #include "period.h"
+#include "numeric/constants.h"
 
 /* Iterates before the measured ones over which tangent vectors turn to where they belong. */
 enum { ALIGNING = 64 };
@@ -116,7 +117,7 @@ static void put_in_window(const journey *j, const double *z, size_t k) {
   size_t numbers = c->n + c->m;
   memcpy(row, z, numbers * sizeof *row);
   if (c->size > numbers) {
-    double radius = c->options.period / 6.28318530717958647692;
+    double radius = c->options.period / two_pi;
     row[numbers] = radius * cos(z[numbers] / radius);
     row[numbers + 1] = radius * sin(z[numbers] / radius);
   }

@@ -2,9 +2,9 @@
 #ifndef RICOCHET_FAMILY_PARTS_H
 #define RICOCHET_FAMILY_PARTS_H
 
-#include "orbit/shooting_gaps.h"
-#include "orbit/shooting_look.h"
-#include "orbit/shooting_spectrum.h"
+#include "shooting/shooting_gaps.h"
+#include "shooting/shooting_look.h"
+#include "shooting/shooting_spectrum.h"
 #include "ricochet/family.h"
 
 /** Test functions: these, then the gap rates of the impacts, then the durations of the arcs between them. */

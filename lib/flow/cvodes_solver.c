@@ -4,7 +4,7 @@
 #include <nvector/nvector_serial.h>
 #include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
 
-#include "sundials_context.h"
+#include "numeric/sundials_context.h"
 
 /* States below it count as of this size: a state passes through zero, and rests there, without steps that shrink. */
 static const double least_size = 1e-3;

@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-#include "vectorised.h"
+#include "numeric/vectorised.h"
 
 /* Columns that level `level` has lost at each side of a block with a halo. */
 RIC_INLINE size_t lost(unsigned terms, int level) {

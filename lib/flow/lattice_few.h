@@ -14,7 +14,7 @@
 #define RICOCHET_LATTICE_FEW_H
 
 #include "lattice_block.h"
-#include "vectorised.h"
+#include "numeric/vectorised.h"
 
 enum {
   FEW = 8,

@@ -5,7 +5,7 @@
 #include <stdint.h>
 
 #include "lattice_variation.h"
-#include "vectorised.h"
+#include "numeric/vectorised.h"
 
 /* Tangent vectors side by side. */
 #if defined(__GNUC__)

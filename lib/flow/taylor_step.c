@@ -3,7 +3,7 @@
 #include <float.h>
 #include <math.h>
 
-#include "vectorised.h"
+#include "numeric/vectorised.h"
 
 enum { LEAST_ORDER = 4, MOST_ORDER = 30, FIRST_COEFFICIENTS = 4 };
 

@@ -8,8 +8,8 @@
 #include <gsl/gsl_blas.h>
 #include <gsl/gsl_linalg.h>
 
-#include "model/largest.h"
-#include "model/number_block.h"
+#include "numeric/largest.h"
+#include "numeric/number_block.h"
 
 /* Coordinates that L does not couple are balanced by eta and xi alone, by no more than 2 to this. */
 enum { most_exponent = 100 };

@@ -6,7 +6,7 @@
 #include "impact/impact_law.h"
 #include "leap.h"
 #include "local.h"
-#include "orbit/arc_runner.h"
+#include "shooting/arc_runner.h"
 
 struct ric_bypass {
   ric_system *system;

@@ -1,4 +1,5 @@
 #include "circle_crossings.h"
+#include "numeric/constants.h"
 
 #include <float.h>
 #include <math.h>
@@ -12,8 +13,6 @@ enum { CELLS_PER_SIZE = 16, MOST_ITERATIONS = 200, DIP_STEPS = 60 };
 
 /* Angles next to 0 and pi that are left out: there the pair is at 1 or -1, a fold or a flip. */
 static const double end_angle = 1e-6;
-
-static const double pi = 3.14159265358979323846;
 
 typedef struct search {
   const one_impact *orbits;

@@ -7,8 +7,8 @@
 
 #include <gsl/gsl_blas.h>
 
-#include "model/largest.h"
-#include "model/number_block.h"
+#include "numeric/largest.h"
+#include "numeric/number_block.h"
 
 /* No numbers of a map are known better than to this, relative to the norm; rounding adds less up to size 1000. */
 static const double entry_tol = 1e-12;

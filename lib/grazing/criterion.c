@@ -9,7 +9,7 @@
 
 #include "coefficients.h"
 #include "dominant.h"
-#include "model/largest.h"
+#include "numeric/largest.h"
 #include "tail.h"
 
 /* Moduli above 1 less this lie on the circle or outside; as multiplier_tol of ric_multiplier_options. */

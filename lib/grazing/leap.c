@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "model/largest.h"
+#include "numeric/largest.h"
 
 enum { LEAP_ROWS = 9 }; /* of 2, 4, 6, ... midpoint steps */
 

@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "model/number_block.h"
+#include "numeric/number_block.h"
 #include "section.h"
 
 /* Flows that cross a section at an angle below it do not cross it. */

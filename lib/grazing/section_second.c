@@ -12,8 +12,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "model/number_block.h"
+#include "numeric/number_block.h"
 #include "section.h"
+#include "numeric/constants.h"
 
 enum { TRIALS = 7, MOST_APPROACHES = 4, MOST_CROSSINGS = 20 };
 
@@ -25,8 +26,6 @@ static const double crossing_tol = 1e-11;
 
 /* A motion whose crossing is farther off than this part of the period has missed the section. */
 static const double farthest = 0.25;
-
-static const double two_pi = 6.283185307179586;
 
 typedef struct second {
   const section *k;

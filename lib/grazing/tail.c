@@ -7,8 +7,8 @@
 
 #include <gsl/gsl_blas.h>
 
-#include "model/cholesky.h"
-#include "model/number_block.h"
+#include "numeric/cholesky.h"
+#include "numeric/number_block.h"
 
 /* B^N with N = 2 to this is the last power looked at: multipliers whose moduli differ by less than 1e-9 are not told.
  */

@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-#include "orbit/shooting_parts.h"
+#include "shooting/shooting_parts.h"
 
 enum { MOST_STEPS = 30 };
 

@@ -2,7 +2,7 @@
 
 #include <stdlib.h>
 
-#include "flow/chebyshev.h"
+#include "numeric/chebyshev.h"
 
 enum { POINTS = GAP_NODES + GAP_PROBES };
 static const double probes[GAP_PROBES] = {0.31830988618379067, 0.80901699437494742}; /* far from the nodes */

@@ -10,7 +10,7 @@
 #ifndef RICOCHET_IMPACT_LAW_H
 #define RICOCHET_IMPACT_LAW_H
 
-#include "complementarity.h"
+#include "numeric/complementarity.h"
 #include "model/system_model.h"
 
 /** One contact at the time of impact. */

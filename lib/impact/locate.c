@@ -2,7 +2,7 @@
 
 #include <stdlib.h>
 
-#include "flow/poly_look.h"
+#include "numeric/poly_look.h"
 #include "growing.h"
 
 enum {

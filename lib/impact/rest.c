@@ -2,7 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "model/largest.h"
+#include "numeric/largest.h"
 #include "trajectory_state.h"
 
 static ric_status blame(const ric_trajectory *tr, size_t obstacle, const char *trouble, ric_error *error) {

@@ -3,8 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "model/largest.h"
-#include "model/path_derivative.h"
+#include "numeric/largest.h"
+#include "numeric/path_derivative.h"
 #include "model/tangent.h"
 
 ric_status tangent_jump_init(tangent_jump *j, const ric_system *system, impact_solver *law, size_t columns,

@@ -3,8 +3,7 @@
 #include <math.h>
 
 #include "image_ring.h"
-
-static const double pi = 3.14159265358979323846;
+#include "numeric/constants.h"
 
 ric_chain ric_chain_default(size_t particles, double gamma) {
   return (ric_chain){.particles = particles, .ends = RIC_ENDS_PERIODIC, .gamma = gamma, .floor = -1};

@@ -4,7 +4,7 @@
 #include <stdint.h>
 #include <stdlib.h>
 
-#include "number_block.h"
+#include "numeric/number_block.h"
 #include "user_callback.h"
 
 static const first_order *first_order_of(const ric_system *system) {

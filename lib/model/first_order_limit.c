@@ -7,8 +7,8 @@
 #include <string.h>
 
 #include "first_order.h"
-#include "largest.h"
-#include "path_derivative.h"
+#include "numeric/largest.h"
+#include "numeric/path_derivative.h"
 #include "user_callback.h"
 
 static const double path_step = 1.0 / 512;  /* largest shift of a state in the derivative of a gap rate */

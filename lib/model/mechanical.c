@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cholesky.h"
-#include "number_block.h"
+#include "numeric/cholesky.h"
+#include "numeric/number_block.h"
 #include "user_callback.h"
 
 static const mechanical *mechanical_of(const ric_system *system) {

@@ -2,10 +2,10 @@
 #include <math.h>
 #include <string.h>
 
-#include "cholesky.h"
-#include "largest.h"
+#include "numeric/cholesky.h"
+#include "numeric/largest.h"
 #include "mechanical.h"
-#include "path_derivative.h"
+#include "numeric/path_derivative.h"
 #include "user_callback.h"
 
 /* Step in time of the derivative of a gap rate, for coordinates that move by at most it. */

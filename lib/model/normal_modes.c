@@ -8,8 +8,8 @@
 #include <gsl/gsl_eigen.h>
 #include <gsl/gsl_errno.h>
 
-#include "cholesky.h"
-#include "largest.h"
+#include "numeric/cholesky.h"
+#include "numeric/largest.h"
 #include "linear_part.h"
 #include "mck_rows.h"
 

@@ -4,8 +4,7 @@
 #include <stdlib.h>
 
 #include "image_ring.h"
-
-static const double pi = 3.14159265358979323846;
+#include "numeric/constants.h"
 
 /* The list under construction: counts everything, keeps what fits. */
 typedef struct collection {

@@ -10,6 +10,7 @@
 #include <stdbool.h>
 
 #include "ricochet/system.h"
+#include "numeric/constants.h"
 
 /** State of a contact, kept by the flow: one byte per obstacle. Models and flows tell the second and the third from all
  *  others. */
@@ -132,7 +133,7 @@ static inline double obstacle_least_gap(const ric_obstacle *o, double lower, dou
 
 /** Whether cosines of a frequency are the same again after a time: whole turns, to rounding. */
 static inline bool frequency_repeats(double frequency, double time) {
-  double turns = frequency * time / 6.28318530717958647692;
+  double turns = frequency * time / two_pi;
   return fabs(turns - round(turns)) <= 1e-14 * fabs(turns);
 }
 

@@ -2,8 +2,8 @@
 
 #include <math.h>
 
-#include "largest.h"
-#include "path_derivative.h"
+#include "numeric/largest.h"
+#include "numeric/path_derivative.h"
 
 size_t system_tangent_work(const ric_system *s) {
   return 4 * (s->coordinates + s->speeds);

@@ -7,8 +7,7 @@
 #include <gsl/gsl_sort_vector.h>
 
 #include "model/image_ring.h"
-
-static const double pi = 3.14159265358979323846;
+#include "numeric/constants.h"
 
 void contact_system_clear(contact_system *c) {
   free(c->store);

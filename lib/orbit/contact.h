@@ -13,7 +13,7 @@
 
 #include <stddef.h>
 
-#include "linear_system.h"
+#include "numeric/linear_system.h"
 #include "response.h"
 #include "ricochet/orbit.h"
 #include "unit_cell.h"

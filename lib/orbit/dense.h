@@ -3,7 +3,7 @@
 #define RICOCHET_DENSE_H
 
 #include "boundary_state.h"
-#include "linear_system.h"
+#include "numeric/linear_system.h"
 #include "ricochet/orbit.h"
 
 /** State of the orbit of a pattern on the whole chain, O(n^3), allocating what it needs.

@@ -4,7 +4,7 @@
 
 #include "boundary_state.h"
 #include "contact.h"
-#include "linear_system.h"
+#include "numeric/linear_system.h"
 
 /** Workspace. */
 typedef struct impulse {

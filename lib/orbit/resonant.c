@@ -3,8 +3,7 @@
 #include <math.h>
 
 #include "model/image_ring.h"
-
-static const double pi = 3.14159265358979323846;
+#include "numeric/constants.h"
 
 /* Wave index (a real number) at which the image ring has a frequency, clamped to the band. */
 static double wave_index(const ric_chain *chain, double frequency) {

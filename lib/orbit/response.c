@@ -4,8 +4,7 @@
 #include <string.h>
 
 #include "model/image_ring.h"
-
-static const double pi = 3.14159265358979323846;
+#include "numeric/constants.h"
 
 /* Waves with n |sin d| below it are set apart. What they leave in the contact matrix, 2 / n times 1 / (2 omega |sin
  * d|), is then of order one, so that no digits cancel there unless the matrix is singular. */

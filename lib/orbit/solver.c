@@ -8,6 +8,7 @@
 
 #include "dense.h"
 #include "verdict.h"
+#include "numeric/constants.h"
 
 static ric_status check_options(const ric_orbit_options *o, ric_error *error) {
   const struct {
@@ -45,9 +46,8 @@ void ric_orbit_solver_destroy(ric_orbit_solver **solver) {
   unit_cell_clear(&(*solver)->cell);
   impulse_clear(&(*solver)->impulse);
   motion_clear(&(*solver)->motion);
-  kicks_clear(&(*solver)->kicks);
-  reduced_clear(&(*solver)->reduced);
-  secular_clear(&(*solver)->secular);
+  if ((*solver)->multipliers)
+    (*solver)->destroy_multipliers((*solver)->multipliers);
   free((*solver)->store);
   free(*solver);
   *solver = NULL;
@@ -67,7 +67,7 @@ static ric_status check_problem(const ric_orbit_solver *s, const ric_chain *chai
   RIC_TRY(ric_chain_check(chain, error));
   if (!(period > 0 && period < INFINITY))
     return ric_fail(error, RIC_EINVAL, "period = %g, expected 0 < period < infinity", period);
-  double turns = ric_chain_frequency_max(chain) * period / 6.283185307179586;
+  double turns = ric_chain_frequency_max(chain) * period / two_pi;
   if (!(turns <= RIC_MOST_HARMONICS))
     return ric_fail(error, RIC_ELIMIT, "fastest mode with %.3g oscillations per period, expected at most %d", turns,
                     RIC_MOST_HARMONICS);

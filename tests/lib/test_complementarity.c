@@ -1,7 +1,7 @@
 /* The complementarity problem of contacts that act together: against enumeration of all sets, and its mechanics. */
 #include "support.h"
 
-#include "impact/complementarity.h"
+#include "numeric/complementarity.h"
 #include "scenario/random_source.h"
 
 enum { MOST = 12 };

@@ -3,15 +3,16 @@
 
 #include <complex.h>
 
-#include "orbit/circle.h"
-#include "orbit/solver.h"
-#include "orbit/winding.h"
+#include "floquet/circle.h"
+#include "floquet/orbit_spectrum.h"
+#include "floquet/winding.h"
 #include "scenario/scenario.h"
 
 /* An orbit with its determinant and its reduced matrix. */
 typedef struct prepared {
   scenario s;
   ric_orbit_solver *solver;
+  orbit_spectrum *spectrum;
   ric_orbit orbit;
 } prepared;
 
@@ -20,8 +21,9 @@ static prepared prepare(scenario s) {
   size_t grazing;
   assert_int_equal(ric_orbit_solver_create(NULL, &p.solver, NULL), RIC_OK);
   assert_int_equal(scenario_solve(&p.s, p.solver, &p.orbit, NULL), RIC_OK);
-  assert_int_equal(kicks_of_orbit(&p.solver->kicks, &s.chain, s.pattern, &p.orbit, 1e-10, &grazing, NULL), RIC_OK);
-  assert_int_equal(secular_prepare(&p.solver->secular, &s.chain, &p.solver->kicks, s.period, NULL), RIC_OK);
+  assert_int_equal(orbit_spectrum_of(p.solver, &p.spectrum, NULL), RIC_OK);
+  assert_int_equal(kicks_of_orbit(&p.spectrum->kicks, &s.chain, s.pattern, &p.orbit, 1e-10, &grazing, NULL), RIC_OK);
+  assert_int_equal(secular_prepare(&p.spectrum->secular, &s.chain, &p.spectrum->kicks, s.period, NULL), RIC_OK);
   return p;
 }
 
@@ -39,9 +41,9 @@ static double complex log_product(const prepared *p, double complex alpha) {
   size_t n = p->s.chain.particles;
   double complex sum = 0;
   for (size_t i = 0; i + 1 < n; i++)
-    sum += clog(alpha - CMPLX(p->solver->reduced.spectrum.alpha[i].re, p->solver->reduced.spectrum.alpha[i].im));
+    sum += clog(alpha - CMPLX(p->spectrum->reduced.spectrum.alpha[i].re, p->spectrum->reduced.spectrum.alpha[i].im));
   for (size_t j = 0; j < n; j++)
-    sum -= clog(alpha - cos(p->solver->secular.poles[j].angle));
+    sum -= clog(alpha - cos(p->spectrum->secular.poles[j].angle));
   return sum;
 }
 
@@ -51,10 +53,10 @@ static void determinant_is_the_product_over_multipliers_and_modes(void **state) 
   double worst = 0;
   for (int i = 0; i < 100; i++) {
     prepared p = prepare(scenario_few(&source, &ranges, 6));
-    assert_int_equal(reduced_compute(&p.solver->reduced, &p.s.chain, &p.solver->kicks, &p.orbit, NULL), RIC_OK);
+    assert_int_equal(reduced_compute(&p.spectrum->reduced, &p.s.chain, &p.spectrum->kicks, &p.orbit, NULL), RIC_OK);
     for (int k = 0; k < 5; k++) {
       double complex zeta = CMPLX(random_uniform(&source, 0.05, 1), random_uniform(&source, 0, 3.1));
-      double complex ratio = cexp(secular_log(&p.solver->secular, zeta) - log_product(&p, ccosh(zeta)));
+      double complex ratio = cexp(secular_log(&p.spectrum->secular, zeta) - log_product(&p, ccosh(zeta)));
       worst = fmax(worst, cabs(ratio - 1));
     }
     discard(&p);
@@ -71,15 +73,15 @@ static void counts_on_the_circle_and_outside_are_those_of_the_eigenvalues(void *
     prepared p = prepare(scenario_few(&source, &ranges, 3));
     size_t n = p.s.chain.particles, beyond = 0, outside;
     const double radius = 0.01;
-    assert_int_equal(reduced_compute(&p.solver->reduced, &p.s.chain, &p.solver->kicks, &p.orbit, NULL), RIC_OK);
+    assert_int_equal(reduced_compute(&p.spectrum->reduced, &p.s.chain, &p.spectrum->kicks, &p.orbit, NULL), RIC_OK);
     for (size_t k = 0; k + 1 < n; k++) {
       double complex root =
-          cacosh(CMPLX(p.solver->reduced.spectrum.alpha[k].re, p.solver->reduced.spectrum.alpha[k].im));
+          cacosh(CMPLX(p.spectrum->reduced.spectrum.alpha[k].re, p.spectrum->reduced.spectrum.alpha[k].im));
       beyond += fabs(creal(root)) > radius;
     }
-    assert_true(winding_outside(&p.solver->secular, radius, &outside));
+    assert_true(winding_outside(&p.spectrum->secular, radius, &outside));
     assert_int_equal(outside, beyond);
-    assert_true(circle_count(&p.solver->secular, 1e-4, 40) + outside <= n);
+    assert_true(circle_count(&p.spectrum->secular, 1e-4, 40) + outside <= n);
     discard(&p);
   }
 }
@@ -93,8 +95,8 @@ static void memory_is_below_a_kilobyte_per_particle_and_impact(void **state) {
     prepared p = prepare(s);
     double each = (double)(s.chain.particles * ric_pattern_impacts(s.pattern));
     print_message("%zu particles, %zu impacts: %.0f bytes each\n", s.chain.particles, ric_pattern_impacts(s.pattern),
-                  secular_bytes(&p.solver->secular) / each);
-    assert_true(secular_bytes(&p.solver->secular) <= 1024 * each);
+                  secular_bytes(&p.spectrum->secular) / each);
+    assert_true(secular_bytes(&p.spectrum->secular) <= 1024 * each);
     discard(&p);
   }
 }
