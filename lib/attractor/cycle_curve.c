@@ -7,6 +7,8 @@
 
 #include <gsl/gsl_linalg.h>
 
+#include "numeric/largest.h"
+
 enum { MOST_CORRECTIONS = 20 };
 
 /* A correction below it, relative to the scales, is the last: what is left of it is about its square. */
@@ -45,13 +47,6 @@ void cycle_curve_clear(cycle_curve *c) {
 
 /* --- lengths ------------------------------------------------------------------------------------------------------ */
 
-static double largest_of(const double *x, size_t count) {
-  double largest = 0;
-  for (size_t i = 0; i < count; i++)
-    largest = fmax(largest, fabs(x[i]));
-  return largest;
-}
-
 static void set_scales(const double *x, size_t count, double least, double *scale) {
   for (size_t i = 0; i < count; i++)
     scale[i] = least > 0 ? fmax(fabs(x[i]), least) : 1;
@@ -62,13 +57,13 @@ static void set_scales(const double *x, size_t count, double least, double *scal
 void cycle_curve_measure(cycle_curve *c, const double *x) {
   const cycle_equations *e = c->equations;
   size_t m = e->map.size, states = e->pieces * m;
-  double y = largest_of(x + states, e->impacts);
+  double y = largest(x + states, e->impacts);
   if (c->least_y == 0)
     c->least_y = least_part * y;
   y = fmax(y, c->least_y);
-  double unit = fmax(fabs(e->d), y * y) / largest_of(e->map.eta, m);
+  double unit = fmax(fabs(e->d), y * y) / largest(e->map.eta, m);
   for (size_t k = 0; k < e->pieces; k++) {
-    double size = fmax(largest_of(x + k * m, m), least_part * unit);
+    double size = fmax(largest(x + k * m, m), least_part * unit);
     set_scales(x + k * m, m, size, c->scale + k * m);
     set_scales(x + k * m, m, least_column * size, c->columns + k * m);
   }
