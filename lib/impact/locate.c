@@ -34,8 +34,8 @@ void locator_clear(locator *l) {
   *l = (locator){0};
 }
 
-static ric_status add_hit(hit_list *list, hit h, ric_error *error) {
-  hit *hits = growing_room(list->hits, list->count, &list->capacity, sizeof *hits);
+static ric_status add_root(contact_root_list *list, contact_root h, ric_error *error) {
+  contact_root *hits = growing_room(list->hits, list->count, &list->capacity, sizeof *hits);
   if (!hits)
     return ric_fail(error, RIC_ENOMEM, "no memory for more than %zu events at one time", list->count);
   list->hits = hits;
@@ -56,7 +56,7 @@ static ric_status found_root(scan *s, size_t obstacle, double x) {
     return RIC_OK;
   if (x < s->l->first)
     s->l->first = x;
-  return add_hit(&s->l->roots, (hit){.obstacle = obstacle, .x = x, .depth = NAN}, s->error);
+  return add_root(&s->l->roots, (contact_root){.obstacle = obstacle, .x = x, .depth = NAN}, s->error);
 }
 
 /* Cuts a part off behind the first root so far, or the horizon: what comes later is of no interest, and on the short
@@ -125,8 +125,8 @@ static ric_status look_at_gap(scan *s, size_t obstacle, const gap_part *part, de
   *found = first_root(s, obstacle, part, from, &y);
   if (from != DEPARTS_SLOWLY && ric_poly_first_minimum(part->c, part->degree, s->l->grazing_tol, &at, &least) &&
       is_near_miss(part, *found, y, at, least, s->l->noise))
-    RIC_TRY(
-        add_hit(&s->l->grazes, (hit){.obstacle = obstacle, .x = part->from + at * width, .depth = least}, s->error));
+    RIC_TRY(add_root(&s->l->grazes, (contact_root){.obstacle = obstacle, .x = part->from + at * width, .depth = least},
+                     s->error));
   return *found ? found_root(s, obstacle, part->from + y * width) : RIC_OK;
 }
 
@@ -220,17 +220,17 @@ static ric_status scan_piece(scan *s, const ric_segment *piece) {
 }
 
 static int by_obstacle(const void *a, const void *b) {
-  size_t x = ((const hit *)a)->obstacle, y = ((const hit *)b)->obstacle;
+  size_t x = ((const contact_root *)a)->obstacle, y = ((const contact_root *)b)->obstacle;
   return x < y ? -1 : x > y;
 }
 
 static int by_position(const void *a, const void *b) {
-  double x = ((const hit *)a)->x, y = ((const hit *)b)->x;
+  double x = ((const contact_root *)a)->x, y = ((const contact_root *)b)->x;
   return x < y ? -1 : x > y ? 1 : by_obstacle(a, b);
 }
 
 /* Drops what comes later than the first root, which was not known while the pieces were looked at. */
-static void keep(hit_list *list, double latest) {
+static void keep(contact_root_list *list, double latest) {
   size_t kept = 0;
   for (size_t i = 0; i < list->count; i++)
     if (list->hits[i].x <= latest)

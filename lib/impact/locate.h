@@ -16,16 +16,16 @@ typedef enum departure {
 } departure;
 
 /** An event on the step. */
-typedef struct hit {
+typedef struct contact_root {
   size_t obstacle;
   double x;     /* position in the step */
   double depth; /* grazing without contact: the minimum of the gap; NaN: a root */
-} hit;
+} contact_root;
 
-typedef struct hit_list {
-  hit *hits;
+typedef struct contact_root_list {
+  contact_root *hits;
   size_t count, capacity;
-} hit_list;
+} contact_root_list;
 
 typedef struct locator {
   gap_reader reader;
@@ -36,9 +36,9 @@ typedef struct locator {
   double horizon;            /* the step was looked at up to here: 1 unless functions vary too fast for all of it */
   double *lower, *upper;     /* bounds of the coordinates of a piece */
   size_t width;
-  double first;    /* position of the first root in the step; > 1 when there is none */
-  hit_list roots;  /* those within the time tolerance of it */
-  hit_list grazes; /* minima above zero before it */
+  double first;             /* position of the first root in the step; > 1 when there is none */
+  contact_root_list roots;  /* those within the time tolerance of it */
+  contact_root_list grazes; /* minima above zero before it */
 } locator;
 
 ric_status locator_init(locator *l, ric_flow *flow, double grazing_tol, ric_error *error);

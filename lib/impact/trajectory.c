@@ -170,7 +170,7 @@ static void show_pieces(ric_trajectory *tr, double x) {
 
 static void show_grazes(ric_trajectory *tr, double start, double length) {
   for (size_t i = 0; i < tr->locator.grazes.count; i++) {
-    const hit *h = &tr->locator.grazes.hits[i];
+    const contact_root *h = &tr->locator.grazes.hits[i];
     ric_event event = event_of(tr, RIC_EVENT_GRAZING, h->obstacle);
     event.time = start + h->x * length;
     event.depth = h->depth;

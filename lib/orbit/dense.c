@@ -12,15 +12,15 @@
 #include "pattern_roles.h"
 
 /* Matrices and vectors of size 2n, all freed together. */
-typedef struct dense {
+typedef struct dense_equations {
   size_t n;
   gsl_matrix *a, *modes;     /* [n][n]: K, work; eigenvectors of K */
   gsl_matrix *flow, *system; /* [2n][2n]: exp(A T/2), M + N exp(A T/2) */
   gsl_vector *rhs, *x, *x_half, *tau, *norm, *work;
   gsl_permutation *permutation;
-} dense;
+} dense_equations;
 
-static void dense_free(dense *d) {
+static void dense_free(dense_equations *d) {
   gsl_matrix *matrices[] = {d->a, d->modes, d->flow, d->system};
   gsl_vector *vectors[] = {d->rhs, d->x, d->x_half, d->tau, d->norm, d->work};
   for (size_t i = 0; i < sizeof matrices / sizeof *matrices; i++)
@@ -33,9 +33,9 @@ static void dense_free(dense *d) {
     gsl_permutation_free(d->permutation);
 }
 
-static ric_status dense_alloc(dense *d, size_t n, ric_error *error) {
+static ric_status dense_alloc(dense_equations *d, size_t n, ric_error *error) {
   size_t size = 2 * n;
-  *d = (dense){.n = n};
+  *d = (dense_equations){.n = n};
   d->a = gsl_matrix_calloc(n, n);
   d->modes = gsl_matrix_calloc(n, n);
   d->flow = gsl_matrix_calloc(size, size);
@@ -55,7 +55,7 @@ static ric_status dense_alloc(dense *d, size_t n, ric_error *error) {
 }
 
 /* -K from accelerations at unit displacements, symmetric. */
-static void stiffness(dense *d, const ric_chain *chain) {
+static void stiffness(dense_equations *d, const ric_chain *chain) {
   size_t n = d->n;
   double *unit = d->x->data, *acceleration = d->x_half->data;
   for (size_t j = 0; j < n; j++) {
@@ -69,7 +69,7 @@ static void stiffness(dense *d, const ric_chain *chain) {
 
 /* exp(A t) with A = (0, I; -K, 0), block by block from the numerical eigenvectors of K: cos(wt), sin(wt)/w, -w sin(wt).
  * A Taylor series with squaring loses a digit for every doubling of the time. */
-static int exponentiate(dense *d, const ric_chain *chain, double t) {
+static int exponentiate(dense_equations *d, const ric_chain *chain, double t) {
   size_t n = d->n;
   stiffness(d, chain);
   gsl_eigen_symmv_workspace *w = gsl_eigen_symmv_alloc(n);
@@ -91,13 +91,13 @@ static int exponentiate(dense *d, const ric_chain *chain, double t) {
 }
 
 /* Row `row` of the system := row `source` of the flow, or of the identity. */
-static void set_row(dense *d, size_t row, size_t source, int from_flow) {
+static void set_row(dense_equations *d, size_t row, size_t source, int from_flow) {
   for (size_t j = 0; j < 2 * d->n; j++)
     gsl_matrix_set(d->system, row, j, from_flow ? gsl_matrix_get(d->flow, source, j) : j == source);
 }
 
 /* The boundary conditions (8): free and half-period particles start at rest, start particles end at rest, and so on. */
-static void impose(dense *d, const ric_chain *chain, const ric_pattern *pattern) {
+static void impose(dense_equations *d, const ric_chain *chain, const ric_pattern *pattern) {
   size_t n = d->n;
   for (size_t i = 0; i < n; i++) {
     ric_role role = ric_pattern_role(pattern, i);
@@ -114,8 +114,8 @@ static void impose(dense *d, const ric_chain *chain, const ric_pattern *pattern)
   }
 }
 
-static ric_status solve(dense *d, const ric_chain *chain, const ric_pattern *pattern, const ric_orbit_options *options,
-                        linear_outcome *solution, ric_error *error) {
+static ric_status solve(dense_equations *d, const ric_chain *chain, const ric_pattern *pattern,
+                        const ric_orbit_options *options, linear_outcome *solution, ric_error *error) {
   linear_work work = {
       .tau = d->tau->data, .norm = d->norm->data, .work = d->work->data, .permutation = d->permutation->data};
   linear_factor factor;
@@ -137,7 +137,7 @@ static ric_status solve(dense *d, const ric_chain *chain, const ric_pattern *pat
 ric_status dense_solve(const ric_chain *chain, const ric_pattern *pattern, double period,
                        const ric_orbit_options *options, const boundary_state *state, linear_outcome *solution,
                        ric_error *error) {
-  dense d;
+  dense_equations d;
   size_t n = chain->particles;
   RIC_TRY(dense_alloc(&d, n, error));
   int code = exponentiate(&d, chain, period / 2);
