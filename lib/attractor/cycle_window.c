@@ -9,7 +9,7 @@
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_roots.h>
 
-#include "cycle_curve.h"
+#include "cycle_equations.h"
 
 enum { MOST_STEPS = 100000, MOST_TRIALS = 200 };
 

@@ -7,9 +7,9 @@
 
 #include <gsl/gsl_errno.h>
 
-#include "map_block.h"
-#include "numeric/orthonormal.h"
-#include "period.h"
+#include "map_kernels.h"
+#include "numeric/linear.h"
+#include "attractor.h"
 
 enum {
   PIECE = 16,  /* iterates at a time: their states stay near the processor */

@@ -1,11 +1,124 @@
+/* One step along the curve: prediction, correction, and the cubic through two points. */
 #include "step.h"
 
 #include <math.h>
 #include <string.h>
 
 #include "corrector.h"
-#include "cubic.h"
-#include "predictor.h"
+
+/* d x_i / d sigma at both ends */
+typedef struct slopes {
+  double scale_a, scale_b, length;
+} slopes;
+
+static slopes slopes_of(const cubic *q) {
+  return (slopes){.scale_a = 1 / curve_row_dot(q->c, q->row, q->a->t),
+                  .scale_b = 1 / curve_row_dot(q->c, q->row, q->b->t),
+                  .length = q->b->sigma - q->a->sigma};
+}
+
+void cubic_point(const cubic *q, double sigma, double *x) {
+  slopes s = slopes_of(q);
+  double f = (sigma - q->a->sigma) / s.length, g = 1 - f;
+  double to_b = f * f * (3 - 2 * f), of_a = f * g * g * s.length * s.scale_a, of_b = -f * f * g * s.length * s.scale_b;
+  for (size_t i = 0; i < q->c->linear.size; i++)
+    x[i] = q->a->x[i] + to_b * (q->b->x[i] - q->a->x[i]) + of_a * q->a->t[i] + of_b * q->b->t[i];
+}
+
+static void derivative(const cubic *q, double sigma, double *t) {
+  slopes s = slopes_of(q);
+  double f = (sigma - q->a->sigma) / s.length, g = 1 - f;
+  double chord = 6 * f * g / s.length, of_a = g * (1 - 3 * f) * s.scale_a, of_b = f * (3 * f - 2) * s.scale_b;
+  for (size_t i = 0; i < q->c->linear.size; i++)
+    t[i] = chord * (q->b->x[i] - q->a->x[i]) + of_a * q->a->t[i] + of_b * q->b->t[i];
+}
+
+void cubic_tangent(const cubic *q, double sigma, double *t) {
+  derivative(q, sigma, t);
+  double length = curve_norm(q->c, t);
+  for (size_t i = 0; i < q->c->linear.size; i++)
+    t[i] /= length;
+}
+
+double cubic_length(const cubic *q) {
+  slopes s = slopes_of(q);
+  derivative(q, q->a->sigma + s.length / 2, q->c->z);
+  return s.length * (fabs(s.scale_a) + 4 * curve_norm(q->c, q->c->z) + fabs(s.scale_b)) / 6;
+}
+
+/** How far the chord is from the mean of the end tangents: (turn)^2 / 12 of it on a circle, more when the ends lie on
+ *  different curves. */
+static double cubic_mismatch(const cubic *q) {
+  slopes s = slopes_of(q);
+  double *z = q->c->z;
+  for (size_t i = 0; i < q->c->linear.size; i++)
+    z[i] = q->b->x[i] - q->a->x[i] - s.length / 2 * (s.scale_a * q->a->t[i] + s.scale_b * q->b->t[i]);
+  return curve_norm(q->c, z);
+}
+
+/* What the polynomial runs over: p, which natural steps give; else arclength, in which a circle is as smooth as can be.
+ * (Over the progress its sixth derivative is 45 times as large.) */
+static double place_of(const ric_curve *c, const curve_node *node) {
+  size_t n = c->problem.unknowns;
+  return c->options.natural ? c->row[n] * (node->x[n] - c->from.x[n]) : node->arclength - c->from.arclength;
+}
+
+static double scale_of(const ric_curve *c, const curve_node *node) {
+  return c->options.natural ? 1 / curve_row_dot(c, c->row, node->t) : 1;
+}
+
+/* Hermite's polynomial through the last points along their tangents, by its basis. */
+static void extrapolate(const ric_curve *c, size_t count, double h, double *x) {
+  const curve_node *nodes[1 + CURVE_PAST] = {&c->from};
+  double at[1 + CURVE_PAST] = {0};
+  for (size_t k = 1; k < count; k++) {
+    nodes[k] = &c->past[k - 1];
+    at[k] = place_of(c, nodes[k]);
+  }
+  memset(x, 0, c->linear.size * sizeof *x);
+  for (size_t k = 0; k < count; k++) {
+    double l = 1, slope = 0, ahead = h - at[k];
+    for (size_t j = 0; j < count; j++)
+      if (j != k) {
+        l *= (h - at[j]) / (at[k] - at[j]);
+        slope += 1 / (at[k] - at[j]);
+      }
+    double of_x = (1 - 2 * slope * ahead) * l * l, of_t = ahead * l * l * scale_of(c, nodes[k]);
+    for (size_t i = 0; i < c->linear.size; i++)
+      x[i] += of_x * nodes[k]->x[i] + of_t * nodes[k]->t[i];
+  }
+}
+
+/** The point ahead of `from` by h, in arclength or, for natural steps, in p: on the tangent, or on the polynomial
+ * through `from` and points before it along their tangents, of the highest degree that changes the prediction by less
+ * than half of what the one before did.
+ *  @param x  [n + 1] set
+ *  @returns its progress over c->row, which is > 0 */
+static double predictor_point(ric_curve *c, double h, double *x) {
+  extrapolate(c, 1, h, x);
+  double change = h, rounding = c->options.newton_tol * (1 + curve_norm(c, x));
+  size_t count = 1;
+  for (; count <= c->pasts; count++) {
+    double before = change;
+    extrapolate(c, count + 1, h, c->z);
+    change = curve_distance(c, c->z, x);
+    if (!(change > rounding && change < before / 2))
+      break;
+    memcpy(x, c->z, c->linear.size * sizeof *x);
+  }
+  return c->options.natural || count == 1 ? h : curve_progress(c, x);
+}
+
+/* The nodes change places; nothing is copied. */
+void predictor_advance(ric_curve *c, bool keep) {
+  curve_node oldest = c->past[CURVE_PAST - 1];
+  for (size_t k = CURVE_PAST - 1; k > 0; k--)
+    c->past[k] = c->past[k - 1];
+  c->past[0] = c->from;
+  c->from = c->to;
+  c->to = oldest;
+  c->pasts = !keep ? 0 : c->pasts < CURVE_PAST ? c->pasts + 1 : CURVE_PAST;
+}
 
 /* More than cubic_mismatch can be, over the chord, on a curve that turns by less than 1: the corrector has found
  * another curve. */

@@ -10,7 +10,7 @@
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_linalg.h>
 
-#include "family_parts.h"
+#include "family.h"
 
 /* Step of differences of psi, relative to 1 + the size of what moves. */
 static const double psi_step = 1e-5;

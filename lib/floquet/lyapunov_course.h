@@ -5,7 +5,7 @@
 #ifndef RICOCHET_LYAPUNOV_COURSE_H
 #define RICOCHET_LYAPUNOV_COURSE_H
 
-#include "numeric/orthonormal.h"
+#include "numeric/linear.h"
 #include "ricochet/lyapunov.h"
 
 /** Zeroed is empty. */

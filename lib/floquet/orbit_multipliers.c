@@ -7,7 +7,7 @@
 #include <gsl/gsl_errno.h>
 
 #include "determinant.h"
-#include "multiplier_verdict.h"
+#include "multipliers.h"
 #include "ricochet/monodromy.h"
 #include "orbit_spectrum.h"
 

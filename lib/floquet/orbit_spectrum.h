@@ -2,9 +2,8 @@
 #ifndef RICOCHET_ORBIT_SPECTRUM_H
 #define RICOCHET_ORBIT_SPECTRUM_H
 
-#include "kicks.h"
-#include "orbit/solver.h"
 #include "reduced.h"
+#include "orbit/solver.h"
 #include "secular.h"
 
 typedef struct orbit_spectrum {

@@ -1,4 +1,59 @@
-/* Multipliers of an even orbit from one n x n block: internal to the room.
+/* The block of an even orbit of a chain: slopes of its saltation matrices, kernels of the free flow, the matrix.
+ * Internal to the library. */
+#ifndef RICOCHET_REDUCED_H
+#define RICOCHET_REDUCED_H
+
+#include <stdbool.h>
+
+#include "model/image_ring.h"
+#include "multipliers.h"
+#include "ricochet/orbit.h"
+
+/* What the impacts of an orbit do to the motions beside it.
+ *
+ * The saltation matrix of an impact of particle k with restitution 1 acts on (q_k, v_k) alone (the chain has no
+ * damping), as [[-1, 0], [s, -1]] with s = 2 a_k / v_k-, a_k the acceleration at the impact. With the velocity jump
+ * p_k = -2 v_k- this is s = -4 a_k / p_k. */
+
+/** One impact. */
+typedef struct kick {
+  size_t particle;
+  bool at_half;
+  double impulse; /* p */
+  double slope;   /* s */
+} kick;
+
+/** In the order of the pattern: those at t = 0 first. Zeroed once, keeps its memory. */
+typedef struct kick_list {
+  kick *kicks;
+  size_t count, capacity;
+} kick_list;
+
+void kicks_clear(kick_list *list);
+
+/** Reads the impacts of an orbit with a state.
+ *  @param grazing_tol  relative to the largest displacement: impulses up to it have no saltation matrix
+ *  @param grazing  set to the first impact with such an impulse, or to the number of impacts */
+ric_status kicks_of_orbit(kick_list *list, const ric_chain *chain, const ric_pattern *pattern, const ric_orbit *orbit,
+                          double grazing_tol, size_t *grazing, ric_error *error);
+
+/* Entries of the free flow of a chain over T and T/2, from kernels on its image ring.
+ *
+ * The flow over t is [[cos(W t), sin(W t) / W], [-W sin(W t), cos(W t)]] on (q, v), W^2 the stiffness matrix. Its
+ * blocks are functions of the stiffness matrix, so n / 2 + 1 numbers each hold them. */
+
+/** Kernels of one time. */
+typedef struct flow_kernel {
+  double *cosine, *sine, *fall; /* cos, sin / W, -W sin */
+} flow_kernel;
+
+typedef struct flow_kernels {
+  ric_chain shape; /* particles and ends that the plans belong to */
+  lattice_transform *transform;
+  flow_kernel full, half;
+} flow_kernels;
+
+/* Multipliers of an even orbit from one n x n block.
  *
  * The saltation matrix of an impact is S = K P K with P = -1 on (q_k, v_k) and two half kicks K = [[1, 0], [-s/2, 1]].
  * With the free flow F over T/2, based in the middle of the impacts at t = 0, the monodromy matrix is
@@ -9,13 +64,7 @@
  * (M + M^-1) / 2 maps the states with R' x = x to themselves: displacements of the particles that do not hit at t = 0,
  * speeds of those that do. There it is the block W of M, with the eigenvalues alpha = (mu + 1/mu) / 2.
  *
- * Its eigenvalues, and what becomes of them: even_spectrum.h. */
-#ifndef RICOCHET_REDUCED_H
-#define RICOCHET_REDUCED_H
-
-#include "even_spectrum.h"
-#include "flow_kernels.h"
-#include "kicks.h"
+ * Its eigenvalues, and what becomes of them: multipliers.h. */
 
 typedef struct reduced {
   size_t particles;

@@ -18,7 +18,7 @@
  * function to look at near 1.
  *
  * On the circle f is the determinant of a real symmetric matrix H; the number of its negative eigenvalues counts
- * multipliers (circle.h). */
+ * multipliers (determinant.h). */
 #ifndef RICOCHET_SECULAR_H
 #define RICOCHET_SECULAR_H
 
@@ -26,7 +26,7 @@
 
 #include <gsl/gsl_eigen.h>
 
-#include "kicks.h"
+#include "reduced.h"
 
 /** A free mode on the circle: mu = exp(+- i angle). */
 typedef struct secular_pole {

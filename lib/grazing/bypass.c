@@ -1,8 +1,161 @@
+/* The bypass (discontinuity) map: where its gap is smallest, the map itself, and kappa, its second order. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "bypass_parts.h"
+#include "impact/impact_law.h"
+#include "impact/locate.h"
+#include "local.h"
+#include "shooting/arcs.h"
+
+/* Where the gap of the free motion is smallest, and where it opens, forwards and backwards in time.
+ *
+ * The gap is followed by its rate: on the steps of a short motion the gap itself may vary by less than its rounding
+ * where the rate still varies by many times its own. Rates are polynomials on the segments of the flow; their
+ * integrals are searched with certainty (polynomial.h). */
+
+typedef struct gap_search {
+  ric_flow *flow; /* borrowed */
+  size_t obstacle;
+  gap_reader reader;
+} gap_search;
+
+/* The bypass map of one obstacle. */
+
+struct ric_bypass {
+  ric_system *system;
+  size_t obstacle, size; /* n + m */
+  double reach;
+  arc_runner runner;
+  bool leaps; /* short ways are not for the flow to move */
+  leap leap;
+  gap_search search;
+  impact_solver law;
+  double *x, *rates; /* [n + m] a state on the way; rates of change */
+  double time;       /* of x */
+};
+
+enum { HALVINGS = 30 }; /* of a segment on which the gap rate is not resolved */
+
+static ric_status gap_search_init(gap_search *s, ric_flow *flow, size_t obstacle, ric_error *error) {
+  *s = (gap_search){.flow = flow, .obstacle = obstacle};
+  return gap_reader_init(&s->reader, flow, error);
+}
+
+static void gap_search_clear(gap_search *s) {
+  gap_reader_clear(&s->reader);
+}
+
+/* One search along the motion; slopes are those along it, against time when it runs backwards. */
+typedef struct way {
+  gap_search *s;
+  bool opening;        /* else a minimum */
+  double level, slope; /* of the gap, where the last part ended */
+  double time;         /* found */
+  const char *trouble;
+} way;
+
+/* The gap [degree + 2] on a part, from its rate there. */
+static int integrate(const gap_part *rate, double length, double level, double *c) {
+  double width = (rate->to - rate->from) * length;
+  c[0] = level;
+  for (int j = 0; j <= rate->degree; j++)
+    c[j + 1] = rate->c[j] * width / (j + 1);
+  return rate->degree + 1;
+}
+
+static bool finds(const way *w, const double *c, int degree, double *at) {
+  double value, below[RIC_POLY_DEGREE + 2];
+  if (w->opening) {
+    for (int j = 0; j <= degree; j++)
+      below[j] = -c[j];
+    return ric_poly_first_root(below, degree, at);
+  }
+  if (w->slope < 0 && c[1] > 0) { /* between the last part and this one */
+    *at = 0;
+    return true;
+  }
+  return ric_poly_first_minimum(c, degree, INFINITY, at, &value);
+}
+
+static bool look_at_part(way *w, const ric_segment *piece, const gap_part *rate) {
+  double c[RIC_POLY_DEGREE + 2], at;
+  int degree = integrate(rate, piece->length, w->level, c);
+  if (finds(w, c, degree, &at)) {
+    w->time = piece->start + (rate->from + at * (rate->to - rate->from)) * piece->length;
+    return true;
+  }
+  w->level = ric_poly_value(c, degree, 1, &w->slope);
+  return false;
+}
+
+/* Whether it is found on [from, to] of a piece, or there is trouble. */
+static bool look(way *w, const ric_segment *piece, double from, double to, double before, int halvings) {
+  gap_part rate;
+  w->trouble = gap_read(&w->s->reader, piece, w->s->obstacle, WATCH_RATE, from, to, &rate);
+  if (w->trouble)
+    return true;
+  if (gap_is_resolved(&rate, before) || halvings == 0)
+    return look_at_part(w, piece, &rate);
+  double middle = (from + to) / 2;
+  return look(w, piece, from, middle, rate.residual, halvings - 1) ||
+         look(w, piece, middle, to, rate.residual, halvings - 1);
+}
+
+static bool look_at_step(way *w) {
+  ric_flow *flow = w->s->flow;
+  const ric_system *system = flow->system;
+  for (size_t i = 0; i < ric_flow_pieces(flow); i++) {
+    ric_segment piece = ric_flow_piece(flow, i);
+    size_t coordinate = system->obstacles ? system->obstacles[w->s->obstacle].coordinate : 0;
+    if (coordinate < piece.first || coordinate - piece.first >= piece.coordinates)
+      continue;
+    gap_reader_reset(&w->s->reader);
+    if (look(w, &piece, 0, 1, INFINITY, HALVINGS))
+      return true;
+  }
+  return false;
+}
+
+static ric_status go(way *w, double t, const double *x, double span, ric_error *error) {
+  ric_flow *flow = w->s->flow;
+  double end = t + span;
+  RIC_TRY(ric_flow_start(flow, t, x, x + flow->system->coordinates, error));
+  while (ric_flow_time(flow) != end) {
+    ric_status status = ric_flow_step(flow, end, error);
+    if (status == RIC_ENUMERIC) /* nothing is to be found where the motion ends */
+      return RIC_OK;
+    RIC_TRY(status);
+    if (look_at_step(w))
+      break;
+    ric_flow_accept(flow, 1);
+  }
+  if (w->trouble)
+    return ric_fail(error, RIC_ECALLBACK, "from t = %g, obstacle %zu: %s", t, w->s->obstacle, w->trouble);
+  return RIC_OK;
+}
+
+/** First local minimum of the gap on the way from a state.
+ *  @param span  signed length of the way in time, not 0
+ *  @param rate  gap rate at the state
+ *  @param time  set; NaN when there is none, or when the motion ends before
+ *  @returns RIC_ECALLBACK, RIC_EINVAL as ric_flow_start. */
+static ric_status gap_search_minimum(gap_search *s, double t, const double *x, double span, double rate, double *time,
+                                     ric_error *error) {
+  way w = {.s = s, .slope = copysign(1, span) * rate, .time = NAN};
+  RIC_TRY(go(&w, t, x, span, error));
+  *time = w.time;
+  return RIC_OK;
+}
+
+/** First time at which the gap, `depth` <= 0 at the state, is zero again; parameters as above. */
+static ric_status gap_search_opening(gap_search *s, double t, const double *x, double span, double depth, double *time,
+                                     ric_error *error) {
+  way w = {.s = s, .opening = true, .level = depth, .time = NAN};
+  RIC_TRY(go(&w, t, x, span, error));
+  *time = w.time;
+  return RIC_OK;
+}
 
 /* A minimum within this part of the reach, as the rate and its derivative foretell it, is the nearest: motions are
  * smooth over a part of the reach that is larger by far. */
@@ -51,6 +204,19 @@ static ric_status build(ric_bypass *b, const ric_bypass_options *options, ric_er
   return RIC_OK;
 }
 
+void ric_bypass_destroy(ric_bypass **bypass) {
+  if (!bypass || !*bypass)
+    return;
+  ric_bypass *b = *bypass;
+  gap_search_clear(&b->search);
+  leap_clear(&b->leap);
+  impact_solver_clear(&b->law);
+  arc_runner_clear(&b->runner);
+  free(b->x);
+  free(b);
+  *bypass = NULL;
+}
+
 ric_status ric_bypass_create(ric_system *system, size_t obstacle, const ric_bypass_options *options,
                              ric_bypass **bypass, ric_error *error) {
   ric_bypass_options o = options ? *options : ric_bypass_options_default();
@@ -69,19 +235,6 @@ ric_status ric_bypass_create(ric_system *system, size_t obstacle, const ric_bypa
   else
     ric_bypass_destroy(&b);
   return status;
-}
-
-void ric_bypass_destroy(ric_bypass **bypass) {
-  if (!bypass || !*bypass)
-    return;
-  ric_bypass *b = *bypass;
-  gap_search_clear(&b->search);
-  leap_clear(&b->leap);
-  impact_solver_clear(&b->law);
-  arc_runner_clear(&b->runner);
-  free(b->x);
-  free(b);
-  *bypass = NULL;
 }
 
 /* Along the free motion. */
@@ -236,4 +389,111 @@ ric_status ric_bypass_leading(ric_bypass *b, const ric_grazing_local *at_grazing
   if (seen)
     *seen = found;
   return RIC_OK;
+}
+
+/* kappa, the coefficient of y^2 in the bypass map.
+ *
+ * Seen from x = x* - y^2 n with eta n = 1, psi(x) = -y^2 + O(y^4), and (C(x) - x) / y^2 - s xi / y = kappa + O(y) is
+ * a series in y. Another n moves x along the surface psi = const by O(y^2), and that changes C - x by O(y |x - x*|),
+ * which is O(y^3): kappa does not depend on it. Here n is along eta.
+ *
+ * The limit y -> 0 is by Neville's scheme, as far as rounding allows: that of psi over y^3, and the error of s, whose
+ * A_g comes from differences where the gap is a user's, over y. Without s, as the slope of (C(x) - x) / y, kappa has
+ * three digits less: one order is lost at each level. */
+
+enum { LEVELS = 7, SKIPPED = 8 }; /* halvings of y; and those before the map works at all */
+
+/* Time that the first one of the states spends behind the obstacle until the minimum, as a part of the reach; no more
+ * than that of a motion whose times are of order one. */
+static const double first_part = 0.25;
+
+/* Neville's scheme towards y = 0, one row per level of y. */
+typedef struct scheme {
+  ric_bypass *b;
+  const ric_grazing_local *at;
+  double t;
+  const double *x;
+  double *row, *last;      /* [LEVELS][n + m] orders of this level and of the one before */
+  double *state, *image;   /* [n + m] */
+  double *best;            /* [n + m] slope so far */
+  double y[LEVELS], error; /* of best */
+  int level;
+} scheme;
+
+/* (C(z) - z) / y^2 - s xi / y at z = x - depth eta / |eta|^2. */
+static ric_status sample(scheme *k, double depth, ric_error *error) {
+  const ric_grazing_local *at = k->at;
+  size_t size = k->b->size;
+  double square = 0, s = sqrt(2 * at->acceleration);
+  ric_bypass_seen seen;
+  for (size_t i = 0; i < size; i++)
+    square += at->eta[i] * at->eta[i];
+  for (size_t i = 0; i < size; i++)
+    k->state[i] = k->x[i] - depth * at->eta[i] / square;
+  RIC_TRY(ric_bypass_map(k->b, k->t, k->state, k->image, &seen, error));
+  double y = k->y[k->level] = sqrt(fmax(-seen.psi, 0));
+  if (!(y > 0))
+    return ric_fail(error, RIC_ENUMERIC, "the gap is %.3g at a state %.3g behind grazing, expected less than zero",
+                    seen.psi, depth);
+  for (size_t i = 0; i < size; i++)
+    k->row[i] = ((k->image[i] - k->state[i]) / y - s * at->xi[i]) / y;
+  return RIC_OK;
+}
+
+static double difference(const double *a, const double *b, size_t size) {
+  double most = 0;
+  for (size_t i = 0; i < size; i++)
+    most = fmax(most, fabs(a[i] - b[i]));
+  return most;
+}
+
+/* The orders of this level. An entry is as good as it agrees with the two it is made of: beyond the best one rounding
+ * takes over. */
+static void extrapolate(scheme *k) {
+  size_t size = k->b->size;
+  for (int order = 1; order <= k->level; order++) {
+    const double *fine = k->row + (size_t)(order - 1) * size, *coarse = k->last + (size_t)(order - 1) * size;
+    double *now = k->row + (size_t)order * size, ratio = k->y[k->level - order] / k->y[k->level];
+    for (size_t i = 0; i < size; i++)
+      now[i] = fine[i] + (fine[i] - coarse[i]) / (ratio - 1);
+    double error = fmax(difference(now, fine, size), difference(now, coarse, size));
+    if (!(error < k->error))
+      continue;
+    k->error = error;
+    memcpy(k->best, now, size * sizeof *now);
+  }
+}
+
+static ric_status run(scheme *k, ric_error *error) {
+  double time = first_part * fmin(1, k->b->reach), rate = k->at->acceleration / 2;
+  for (int skipped = 0; k->level < LEVELS; time /= 2) {
+    ric_status status = sample(k, rate * time * time, error);
+    if (status == RIC_ENUMERIC && k->level == 0 && skipped++ < SKIPPED)
+      continue;
+    RIC_TRY(status);
+    extrapolate(k);
+    double *row = k->row;
+    k->row = k->last;
+    k->last = row;
+    k->level++;
+  }
+  return RIC_OK;
+}
+
+ric_status ric_bypass_second(ric_bypass *b, const ric_grazing_local *at_grazing, double t, const double *x,
+                             double *kappa, ric_error *error) {
+  RIC_TRY(grazing_check_local(at_grazing, b->system, error));
+  double *work = malloc((2 * LEVELS + 3) * b->size * sizeof *work);
+  if (!work)
+    return ric_fail(error, RIC_ENOMEM, "no memory for an extrapolation of %zu numbers", b->size);
+  scheme k = {.b = b, .at = at_grazing, .t = t, .x = x, .row = work, .error = INFINITY};
+  k.last = k.row + LEVELS * b->size;
+  k.state = k.last + LEVELS * b->size;
+  k.image = k.state + b->size;
+  k.best = k.image + b->size;
+  ric_status status = run(&k, error);
+  if (status == RIC_OK)
+    memcpy(kappa, k.best, b->size * sizeof *kappa);
+  free(work);
+  return status;
 }

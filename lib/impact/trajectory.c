@@ -1,11 +1,58 @@
-#include "ricochet/trajectory.h"
+/* Event-driven motions: the main loop, its options and outcomes, and samples. */
+#include "trajectory_state.h"
 
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "trajectory_state.h"
+#include "ricochet/trajectory.h"
+
+/* Position of a time in a piece. */
+static double position(const ric_segment *piece, double time) {
+  double x = (time - piece->start) / piece->length;
+  return x < 0 ? 0 : x > 1 ? 1 : x;
+}
+
+static void fill(const ric_sampler *s, const ric_segment *piece, size_t k) {
+  size_t speeds = piece->speeds ? piece->speeds : piece->coordinates;
+  double *u = s->u && s->speeds ? s->u + k * s->speeds + (speeds == piece->coordinates ? piece->first : 0) : NULL;
+  ric_segment_state(piece, position(piece, s->times[k]), s->q + k * s->coordinates + piece->first, u);
+}
+
+/* Times in [start, end of the part): the end itself belongs to what comes after. */
+int ric_sampler_segment(const ric_segment *piece, double end, void *sampler) {
+  ric_sampler *s = sampler;
+  double until = piece->start + end * piece->length;
+  size_t k = s->next;
+  for (; k < s->count && s->times[k] < until; k++)
+    fill(s, piece, k);
+  if (piece->first + piece->coordinates == s->coordinates) /* the last piece of the step */
+    s->next = k;
+  return 0;
+}
+
+const double *ric_trajectory_q(const ric_trajectory *trajectory) {
+  return trajectory->flow->q;
+}
+
+const double *ric_trajectory_u(const ric_trajectory *trajectory) {
+  return trajectory->flow->u;
+}
+
+double ric_trajectory_time(const ric_trajectory *trajectory) {
+  return trajectory->flow->time;
+}
+
+void ric_sampler_finish(ric_sampler *sampler, const ric_trajectory *trajectory) {
+  const double *q = ric_trajectory_q(trajectory), *u = ric_trajectory_u(trajectory);
+  for (; sampler->next < sampler->count && sampler->times[sampler->next] <= ric_trajectory_time(trajectory);
+       sampler->next++) {
+    memcpy(sampler->q + sampler->next * sampler->coordinates, q, sampler->coordinates * sizeof *q);
+    if (sampler->u && sampler->speeds)
+      memcpy(sampler->u + sampler->next * sampler->speeds, u, sampler->speeds * sizeof *u);
+  }
+}
 
 const char *ric_run_outcome_name(ric_run_outcome outcome) {
   static const char *const names[] = {
@@ -62,24 +109,6 @@ static ric_status build(ric_trajectory *tr, ric_error *error) {
   return RIC_OK;
 }
 
-ric_status ric_trajectory_create(const ric_system *system, const ric_trajectory_options *options,
-                                 ric_trajectory **trajectory, ric_error *error) {
-  ric_trajectory_options o = options ? *options : ric_trajectory_options_default();
-  *trajectory = NULL;
-  RIC_TRY(check_options(&o, error));
-  ric_trajectory *tr = calloc(1, sizeof *tr);
-  if (!tr)
-    return ric_fail(error, RIC_ENOMEM, "no memory for a trajectory");
-  tr->system = system;
-  tr->options = o;
-  ric_status status = build(tr, error);
-  if (status == RIC_OK)
-    *trajectory = tr;
-  else
-    ric_trajectory_destroy(&tr);
-  return status;
-}
-
 void ric_trajectory_destroy(ric_trajectory **trajectory) {
   if (!trajectory || !*trajectory)
     return;
@@ -100,6 +129,24 @@ void ric_trajectory_destroy(ric_trajectory **trajectory) {
   carried_clear(&tr->carried);
   free(tr);
   *trajectory = NULL;
+}
+
+ric_status ric_trajectory_create(const ric_system *system, const ric_trajectory_options *options,
+                                 ric_trajectory **trajectory, ric_error *error) {
+  ric_trajectory_options o = options ? *options : ric_trajectory_options_default();
+  *trajectory = NULL;
+  RIC_TRY(check_options(&o, error));
+  ric_trajectory *tr = calloc(1, sizeof *tr);
+  if (!tr)
+    return ric_fail(error, RIC_ENOMEM, "no memory for a trajectory");
+  tr->system = system;
+  tr->options = o;
+  ric_status status = build(tr, error);
+  if (status == RIC_OK)
+    *trajectory = tr;
+  else
+    ric_trajectory_destroy(&tr);
+  return status;
 }
 
 static ric_status check_start(const ric_trajectory *tr, double t, const double *q, ric_error *error) {
@@ -311,18 +358,6 @@ ric_status ric_trajectory_run(ric_trajectory *tr, double end, const ric_observer
   if (status != RIC_OK && error)
     *error = local;
   return status;
-}
-
-double ric_trajectory_time(const ric_trajectory *trajectory) {
-  return trajectory->flow->time;
-}
-
-const double *ric_trajectory_q(const ric_trajectory *trajectory) {
-  return trajectory->flow->q;
-}
-
-const double *ric_trajectory_u(const ric_trajectory *trajectory) {
-  return trajectory->flow->u;
 }
 
 int ric_trajectory_rests(const ric_trajectory *trajectory, size_t obstacle) {

@@ -5,7 +5,7 @@
 #include "impact_law.h"
 #include "locate.h"
 #include "ricochet/trajectory.h"
-#include "tangent_jump.h"
+#include "saltation.h"
 
 /** Obstacles in a list that grows. */
 typedef struct index_list {

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cholesky.h"
+#include "linear.h"
 
 /* An unknown depends on others when so little of its unit diagonal is left: directions of contacts less than 1e-5
  * apart are the same one. */

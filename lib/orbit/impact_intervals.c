@@ -2,7 +2,7 @@
  *
  * Resonances cut the range into cells, in each of which S falls from +infinity to -infinity; its zero, the blow-up,
  * cuts a cell into two pieces. On one of them the impulse pulls. On the other the margin of the orbits
- * (impact_verdict.h) is a continuous function of the period, and changes of its sign are grazing contacts. */
+ * (impact_response.h) is a continuous function of the period, and changes of its sign are grazing contacts. */
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
@@ -11,7 +11,7 @@
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_roots.h>
 
-#include "impact_verdict.h"
+#include "impact_response.h"
 #include "numeric/constants.h"
 
 enum { DEFAULT_SAMPLES = 64, MOST_SAMPLES = 1000000, MOST_ITERATIONS = 200, DIP_STEPS = 40 };

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "impact_verdict.h"
+#include "impact_response.h"
 #include "model/linear_part.h"
 #include "verdict.h"
 #include "ricochet/normal_modes.h"

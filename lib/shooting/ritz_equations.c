@@ -3,8 +3,7 @@
 #include <string.h>
 
 #include "model/lattice_system.h"
-#include "model/lattice_tangent.h"
-#include "ritz_parts.h"
+#include "ritz.h"
 #include "numeric/constants.h"
 
 typedef struct equations {

@@ -6,7 +6,7 @@
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_linalg.h>
 
-#include "ritz_parts.h"
+#include "ritz.h"
 #include "numeric/constants.h"
 
 /* Functions that others make up for, but for this part of the first one, are left out of fits. */

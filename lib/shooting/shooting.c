@@ -1,13 +1,149 @@
-#include "ricochet/shooting.h"
+/* Shooting: its options and workspace, the solution from afar, and states of a motion. */
+#include "shooting.h"
 
 #include <math.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "numeric/largest.h"
+#include "numeric/newton.h"
 #include "numeric/path_derivative.h"
-#include "shooting_gaps.h"
-#include "shooting_spectrum.h"
+#include "ricochet/shooting.h"
+
+/* States of a motion at times of its period. */
+
+/* Times this near to the end of a segment, over the period, belong to it: before an impact there. */
+static const double end_tol = 1e-12;
+
+typedef struct sampling {
+  const ric_shooting *s;
+  double first, step, slack; /* times */
+  size_t count;              /* of those that are run along: half of an even motion */
+  double *q, *v;             /* [all][n], [all][m] */
+} sampling;
+
+static ric_status begins(const piece_run *run, void *user, ric_error *error) {
+  sampling *p = user;
+  size_t n = p->s->arcs.coordinates;
+  (void)error;
+  if (run->piece != p->s->arcs.pieces)
+    return RIC_OK;
+  p->first = run->begin;
+  memcpy(p->q, p->s->x, n * sizeof *p->q);
+  if (p->s->arcs.speeds > 0) /* v may be NULL */
+    memcpy(p->v, p->s->x + n, p->s->arcs.speeds * sizeof *p->v);
+  return RIC_OK;
+}
+
+/* The first time after one; rounding beside it does not count. */
+static size_t first_after(const sampling *p, double time) {
+  double k = floor((time + p->slack - p->first) / p->step) + 1;
+  return k < 1 ? 1 : k < (double)p->count ? (size_t)k : p->count;
+}
+
+static void segment(const ric_segment *piece, double end, void *user) {
+  sampling *p = user;
+  size_t n = p->s->arcs.coordinates, m = p->s->arcs.speeds;
+  size_t last = first_after(p, piece->start + end * piece->length);
+  for (size_t k = first_after(p, piece->start); k < last; k++) {
+    double x = (p->first + (double)k * p->step - piece->start) / piece->length;
+    ric_segment_state(piece, fmax(0, fmin(x, end)), p->q + k * n + piece->first,
+                      m > 0 ? p->v + k * m + piece->first : NULL);
+  }
+}
+
+/* The second half of an even motion is the first one backwards. */
+static void mirror(const sampling *p, size_t count) {
+  size_t n = p->s->arcs.coordinates;
+  for (size_t k = p->count; k < count; k++)
+    for (size_t i = 0; i < n; i++) {
+      p->q[k * n + i] = p->q[(count - 1 - k) * n + i];
+      p->v[k * n + i] = -p->v[(count - 1 - k) * n + i];
+    }
+}
+
+ric_status ric_shooting_states(ric_shooting *s, const double *z, double given, size_t count, double *q, double *v,
+                               ric_error *error) {
+  bool even = s->arcs.kind == RIC_MOTION_EVEN;
+  double period;
+  if (count < 2 || count > SIZE_MAX / 64 / s->arcs.size)
+    return ric_fail(error, RIC_EINVAL, "count = %zu, expected at least 2 states, and fewer than memory has room for",
+                    count);
+  RIC_TRY(shooting_period(s, z, given, &period, error));
+  sampling p = {.s = s,
+                .step = period / (double)(count - 1),
+                .slack = end_tol * period,
+                .count = even ? (count + 1) / 2 : count,
+                .q = q,
+                .v = v};
+  const shooting_observer observer = {.begins = begins, .segment = segment, .user = &p};
+  for (size_t k = 0; k < count * s->arcs.coordinates; k++)
+    q[k] = NAN;
+  for (size_t k = 0; k < count * s->arcs.speeds; k++)
+    v[k] = NAN;
+  RIC_TRY(shooting_evaluate(s, z, given, s->residual, NULL, NULL, &observer, error));
+  if (even)
+    mirror(&p, count);
+  return RIC_OK;
+}
+
+/* Solving F(z) = 0 from afar. */
+
+static const double default_tolerance = 1e-13;
+
+/* Ends of a conservative motion that are farther apart, relative to 1 + the largest unknown, are not one state. */
+static const double lambda_tol = 1e-6;
+
+/* Motions that take so many times the steps of the guess, and some, lead nowhere: Newton's method tries states of any
+ * size, and fast ones would take for ever. */
+enum { STEPS_GROW = 50, STEPS_MORE = 1000 };
+
+typedef struct search {
+  ric_shooting *s;
+  double given;
+  unsigned long long most_steps; /* of a motion; 0 before the first */
+} search;
+
+static ric_status residual(const double *z, double *F, double *J, void *user, ric_error *error) {
+  search *k = user;
+  arc_runner *runner = &k->s->runner;
+  unsigned long long before = ric_flow_counted(arc_runner_flow(runner)).steps;
+  if (J) /* at a point whose residual is known */
+    return ric_shooting_residual(k->s, z, k->given, F, J, NULL, error);
+  runner->last_step = k->most_steps ? before + k->most_steps : 0;
+  ric_status status = ric_shooting_residual(k->s, z, k->given, F, NULL, NULL, error);
+  runner->last_step = 0;
+  if (k->most_steps == 0)
+    k->most_steps = STEPS_GROW * (ric_flow_counted(arc_runner_flow(runner)).steps - before) + STEPS_MORE;
+  return status;
+}
+
+/* E(x - lambda grad E) = E(x) has other solutions than lambda = 0: they close nothing. */
+static ric_status check_lambda(const ric_shooting *s, const double *z, ric_error *error) {
+  size_t index = s->arcs.lambda;
+  double added = index == NO_UNKNOWN ? 0 : fabs(z[index]) * largest(s->gradient, s->arcs.size);
+  if (added <= lambda_tol * (1 + largest(z, s->arcs.unknowns)))
+    return RIC_OK;
+  return ric_fail(error, RIC_ENUMERIC,
+                  "shooting converges to no motion: its ends are %.3g apart along the gradient of the energy", added);
+}
+
+ric_status ric_shooting_solve(ric_shooting *s, double *z, double given, double tolerance, int *iterations,
+                              ric_error *error) {
+  int count = 0;
+  double tol = tolerance == 0 ? default_tolerance : tolerance;
+  search k = {.s = s, .given = given};
+  const newton_problem problem = {.name = "shooting", .unknowns = s->arcs.unknowns, .residual = residual, .user = &k};
+  if (!(tol > 0 && tol < 1))
+    return ric_fail(error, RIC_EINVAL, "tolerance = %g, expected 0 to 1", tolerance);
+  ric_status status = newton_solve(&problem, z, tol, &count, error);
+  if (status == RIC_OK)
+    status = check_lambda(s, z, error);
+  if (iterations)
+    *iterations = count;
+  return status;
+}
 
 static const double default_grazing_tol = 1e-10;
 
@@ -65,6 +201,21 @@ static ric_status build(ric_shooting *s, const ric_shooting_problem *p, ric_erro
   return tangent_jump_init(&s->jump, s->system, &s->law, s->columns + 2, error);
 }
 
+void ric_shooting_destroy(ric_shooting **shooting) {
+  if (!shooting || !*shooting)
+    return;
+  ric_shooting *s = *shooting;
+  shooting_gaps_destroy(&s->gaps);
+  shooting_spectrum_destroy(&s->spectrum);
+  tangent_jump_clear(&s->jump);
+  impact_solver_clear(&s->law);
+  arc_runner_clear(&s->runner);
+  arcs_clear(&s->arcs);
+  free(s->block);
+  free(s);
+  *shooting = NULL;
+}
+
 ric_status ric_shooting_create(ric_system *system, const ric_shooting_problem *problem, ric_shooting **shooting,
                                ric_error *error) {
   ric_shooting *s = calloc(1, sizeof *s);
@@ -82,21 +233,6 @@ ric_status ric_shooting_create(ric_system *system, const ric_shooting_problem *p
   else
     ric_shooting_destroy(&s);
   return status;
-}
-
-void ric_shooting_destroy(ric_shooting **shooting) {
-  if (!shooting || !*shooting)
-    return;
-  ric_shooting *s = *shooting;
-  shooting_gaps_destroy(&s->gaps);
-  shooting_spectrum_destroy(&s->spectrum);
-  tangent_jump_clear(&s->jump);
-  impact_solver_clear(&s->law);
-  arc_runner_clear(&s->runner);
-  arcs_clear(&s->arcs);
-  free(s->block);
-  free(s);
-  *shooting = NULL;
 }
 
 size_t ric_shooting_unknowns(const ric_shooting *shooting) {

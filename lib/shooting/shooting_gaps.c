@@ -1,4 +1,4 @@
-#include "shooting_gaps.h"
+#include "shooting.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,7 +1,4 @@
-#include "shooting_spectrum.h"
-
-#include "shooting_look.h"
-
+/* The derivative of a motion over its period and between two of its times; its multipliers. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -9,15 +6,107 @@
 
 #include <gsl/gsl_errno.h>
 
-#include "floquet/multiplier_verdict.h"
+#include "floquet/multipliers.h"
+#include "shooting.h"
+
+/* Derivatives of the state of a motion between two of its times. */
+
+/* Ends of pieces this near to one of the times, over the period, are at it: after them. */
+static const double end_tol = 1e-12;
+
+typedef struct transfer {
+  ric_shooting *s;
+  const double *z;
+  double period, origin; /* time of the first state */
+  double from, to;       /* since then */
+  double *x;             /* state at `from` */
+  double *matrix;        /* NULL: only the state is wanted */
+  bool begun;
+} transfer;
+
+static ric_status move(const transfer *k, double from, double to, bool carry, ric_error *error) {
+  ric_shooting *s = k->s;
+  return arc_runner_move(&s->runner, k->origin + from, k->origin + to, s->x, carry ? s->arcs.size : 0,
+                         carry ? s->spectrum->matrix : NULL, NULL, error);
+}
+
+ric_status shooting_spectrum_jump(ric_shooting *s, const piece_run *run, ric_error *error) {
+  shooting_spectrum *k = s->spectrum;
+  size_t n = s->arcs.coordinates, obstacle = run->piece->obstacle;
+  double e = s->system->model->restitution(s->system, obstacle);
+  double rate = ric_system_gap_rate(s->system, obstacle, run->end, s->x, s->x + n), *x = k->after;
+  jump_group group = {&obstacle, &e, 1, false};
+  tangents d = {.columns = k->size, .q = k->matrix, .u = k->matrix + n * k->size};
+  ric_saltation_kind kind = RIC_SALTATION_GRAZING;
+  memcpy(x, s->x, k->size * sizeof *x);
+  if (rate < 0) {
+    for (size_t j = 0; j < s->system->obstacle_count; j++) {
+      k->contact[j] = system_complies(s->system, j) && ric_system_gap(s->system, j, run->end, s->x) < 0
+                          ? CONTACT_PRESSED
+                          : CONTACT_OPEN;
+    }
+    RIC_TRY(tangent_jump_apply(&k->jump, run->end, &group, s->grazing_tol, k->contact, k->contact, x, x + n, &d, &kind,
+                               error));
+  }
+  k->grazing = kind != RIC_SALTATION_DIFFERENTIABLE;
+  k->obstacle = obstacle;
+  return RIC_OK;
+}
+
+/* The part of a piece that lies between the times; `shift` is the period before its own that it is looked at in. */
+static ric_status pass(transfer *k, size_t index, double shift, ric_error *error) {
+  ric_shooting *s = k->s;
+  const double slack = end_tol * k->period;
+  const piece_run run = shooting_begin(s, index, k->z, k->period, WISH_STATE);
+  double begin = run.begin - k->origin, end = run.end - k->origin, from = k->from - shift, to = k->to - shift;
+  if (end <= from + slack || begin > to + slack)
+    return RIC_OK;
+  if (!k->begun) {
+    RIC_TRY(move(k, begin, fmax(begin, from), false, error));
+    memcpy(k->x, s->x, s->arcs.size * sizeof *s->x);
+    begin = fmax(begin, from);
+    k->begun = true;
+  }
+  if (!k->matrix)
+    return RIC_OK;
+  RIC_TRY(move(k, begin, fmax(begin, fmin(end, to)), true, error));
+  if (run.piece->how != PIECE_IMPACT || end > to + slack)
+    return RIC_OK;
+  RIC_TRY(shooting_spectrum_jump(s, &run, error));
+  if (s->spectrum->grazing)
+    return ric_fail(error, RIC_ENUMERIC, "the impact on obstacle %zu at t = %g is too slow for a derivative",
+                    run.piece->obstacle, run.end);
+  return RIC_OK;
+}
+
+static ric_status check(const ric_shooting *s, double from, double to, double period, ric_error *error) {
+  if (s->arcs.kind == RIC_MOTION_EVEN)
+    return ric_fail(error, RIC_EINVAL, "derivatives between times of an even motion, expected another kind");
+  if (fabs(from) < INFINITY && to >= from && to <= from + period * (1 + end_tol))
+    return RIC_OK;
+  return ric_fail(error, RIC_EINVAL, "from = %.9g, to = %.9g, expected from <= to <= from + %.9g, the period", from, to,
+                  period);
+}
 
 static bool is_even(const ric_shooting *s) {
   return s->arcs.kind == RIC_MOTION_EVEN;
 }
 
-/* Whether time does not enter an even motion. */
-static bool is_free(const ric_shooting *s) {
-  return !s->system->model->forced(s->system);
+void shooting_spectrum_destroy(shooting_spectrum **spectrum) {
+  shooting_spectrum *k = *spectrum;
+  if (!k)
+    return;
+  tangent_jump_clear(&k->jump);
+  even_spectrum_clear(&k->even);
+  multiplier_work_clear(&k->work);
+  if (k->bordered)
+    gsl_matrix_free(k->bordered);
+  gsl_permutation_free(k->order);
+  free(k->matrix);
+  free(k->tau);
+  free(k->contact);
+  free(k);
+  *spectrum = NULL;
 }
 
 static ric_status create(ric_shooting *s, shooting_spectrum **spectrum, ric_error *error) {
@@ -50,21 +139,15 @@ static ric_status create(ric_shooting *s, shooting_spectrum **spectrum, ric_erro
   return status;
 }
 
-void shooting_spectrum_destroy(shooting_spectrum **spectrum) {
-  shooting_spectrum *k = *spectrum;
-  if (!k)
-    return;
-  tangent_jump_clear(&k->jump);
-  even_spectrum_clear(&k->even);
-  multiplier_work_clear(&k->work);
-  if (k->bordered)
-    gsl_matrix_free(k->bordered);
-  gsl_permutation_free(k->order);
-  free(k->matrix);
-  free(k->tau);
-  free(k->contact);
-  free(k);
-  *spectrum = NULL;
+/* --- results ------------------------------------------------------------------------------------------------------ */
+
+ric_status shooting_spectrum_reserve(ric_shooting *s, ric_error *error) {
+  if (s->spectrum)
+    return RIC_OK;
+  gsl_error_handler_t *handler = gsl_set_error_handler_off(); /* which would abort when there is no memory */
+  ric_status status = create(s, &s->spectrum, error);
+  gsl_set_error_handler(handler);
+  return status;
 }
 
 /* --- along the motion --------------------------------------------------------------------------------------------- */
@@ -73,27 +156,40 @@ static double *entry(const shooting_spectrum *k, size_t row, size_t column) {
   return &k->matrix[row * k->size + column];
 }
 
-ric_status shooting_spectrum_jump(ric_shooting *s, const piece_run *run, ric_error *error) {
-  shooting_spectrum *k = s->spectrum;
-  size_t n = s->arcs.coordinates, obstacle = run->piece->obstacle;
-  double e = s->system->model->restitution(s->system, obstacle);
-  double rate = ric_system_gap_rate(s->system, obstacle, run->end, s->x, s->x + n), *x = k->after;
-  jump_group group = {&obstacle, &e, 1, false};
-  tangents d = {.columns = k->size, .q = k->matrix, .u = k->matrix + n * k->size};
-  ric_saltation_kind kind = RIC_SALTATION_GRAZING;
-  memcpy(x, s->x, k->size * sizeof *x);
-  if (rate < 0) {
-    for (size_t j = 0; j < s->system->obstacle_count; j++) {
-      k->contact[j] = system_complies(s->system, j) && ric_system_gap(s->system, j, run->end, s->x) < 0
-                          ? CONTACT_PRESSED
-                          : CONTACT_OPEN;
-    }
-    RIC_TRY(tangent_jump_apply(&k->jump, run->end, &group, s->grazing_tol, k->contact, k->contact, x, x + n, &d, &kind,
-                               error));
-  }
-  k->grazing = kind != RIC_SALTATION_DIFFERENTIABLE;
-  k->obstacle = obstacle;
+/* --- the matrix --------------------------------------------------------------------------------------------------- */
+
+void shooting_spectrum_identity(shooting_spectrum *k) {
+  memset(k->matrix, 0, k->size * k->size * sizeof *k->matrix);
+  for (size_t i = 0; i < k->size; i++)
+    *entry(k, i, i) = 1;
+}
+
+ric_status ric_shooting_transfer(ric_shooting *s, const double *z, double given, double from, double to, double *x,
+                                 double *matrix, ric_error *error) {
+  const size_t size = s->arcs.size;
+  transfer k = {.s = s, .z = z, .x = x, .matrix = matrix};
+  RIC_TRY(shooting_period(s, z, given, &k.period, error));
+  RIC_TRY(check(s, from, to, k.period, error));
+  RIC_TRY(shooting_spectrum_reserve(s, error));
+  k.origin = piece_begin(&s->arcs.pieces[0], z, k.period);
+  k.from = fmod(from - k.origin, k.period);
+  k.from += k.from < 0 ? k.period : 0;
+  k.to = k.from + (to - from);
+  s->spectrum->grazing = false;
+  shooting_spectrum_identity(s->spectrum);
+  for (int round = 0; round < 2; round++)
+    for (size_t p = 0; p < s->arcs.count; p++)
+      RIC_TRY(pass(&k, p, round * k.period, error));
+  if (!k.begun)
+    return ric_fail(error, RIC_ENUMERIC, "no arc of the motion is at t = %g", from);
+  if (matrix)
+    memcpy(matrix, s->spectrum->matrix, size * size * sizeof *matrix);
   return RIC_OK;
+}
+
+/* Whether time does not enter an even motion. */
+static bool is_free(const ric_shooting *s) {
+  return !s->system->model->forced(s->system);
 }
 
 /* What was carried along a piece, times the matrix up to its beginning. */
@@ -166,14 +262,6 @@ static void set_half(ric_shooting *s) {
   }
 }
 
-/* --- the matrix --------------------------------------------------------------------------------------------------- */
-
-void shooting_spectrum_identity(shooting_spectrum *k) {
-  memset(k->matrix, 0, k->size * k->size * sizeof *k->matrix);
-  for (size_t i = 0; i < k->size; i++)
-    *entry(k, i, i) = 1;
-}
-
 ric_status shooting_spectrum_begin(ric_shooting *s, ric_error *error) {
   s->spectrum->grazing = false;
   if (is_even(s))
@@ -216,17 +304,6 @@ static void set_block(ric_shooting *s) {
     }
     gsl_vector_set(e->left, i, k->start[n + i]);
   }
-}
-
-/* --- results ------------------------------------------------------------------------------------------------------ */
-
-ric_status shooting_spectrum_reserve(ric_shooting *s, ric_error *error) {
-  if (s->spectrum)
-    return RIC_OK;
-  gsl_error_handler_t *handler = gsl_set_error_handler_off(); /* which would abort when there is no memory */
-  ric_status status = create(s, &s->spectrum, error);
-  gsl_set_error_handler(handler);
-  return status;
 }
 
 /* By QR with column pivoting, since the LU of GSL allocates: each reflection of Q has the determinant -1, one with

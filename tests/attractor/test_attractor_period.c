@@ -1,7 +1,7 @@
 /* Periods of attractors, found in iterates on them. */
 #include "support.h"
 
-#include "attractor/period.h"
+#include "attractor/attractor.h"
 #include "scenario/random_source.h"
 
 enum { LIMIT = 64, STATES = 2 * LIMIT + 1, SIZE = 3 };

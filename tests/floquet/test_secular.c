@@ -3,7 +3,7 @@
 
 #include <complex.h>
 
-#include "floquet/circle.h"
+#include "floquet/determinant.h"
 #include "floquet/orbit_spectrum.h"
 #include "floquet/winding.h"
 #include "scenario/scenario.h"
