@@ -45,7 +45,7 @@ static void apply(const ric_grazing_map *map, const double *x, size_t columns, d
 
 /* --- life --------------------------------------------------------------------------------------------------------- */
 
-static ric_status check(const ric_map_line *line, double p, size_t period, const double *z, ric_error *error) {
+static ric_status check_cycle(const ric_map_line *line, double p, size_t period, const double *z, ric_error *error) {
   if (period < 1 || period > MOST_PERIOD)
     return ric_fail(error, RIC_EINVAL, "period = %zu, expected 1 to %d", period, MOST_PERIOD);
   if (!isfinite(p))
@@ -102,7 +102,7 @@ static ric_status no_memory(const cycle_equations *e, ric_error *error) {
   return ric_fail(error, RIC_ENOMEM, "no memory for a cycle of period %zu", e->period);
 }
 
-static ric_status allocate(cycle_equations *e, ric_error *error) {
+static ric_status allocate_cycle(cycle_equations *e, ric_error *error) {
   size_t m = e->map.size;
   e->hits = calloc(e->period, sizeof *e->hits);
   e->starts = calloc(e->period + 1, sizeof *e->starts);
@@ -141,9 +141,9 @@ ric_status cycle_equations_set(cycle_equations *e, double p, ric_error *error) {
 ric_status cycle_equations_init(cycle_equations *e, const ric_map_line *line, double p, size_t period, const double *z,
                                 ric_error *error) {
   *e = (cycle_equations){.line = line, .period = period};
-  RIC_TRY(check(line, p, period, z, error));
+  RIC_TRY(check_cycle(line, p, period, z, error));
   RIC_TRY(ric_grazing_map_init(&e->map, line->size, error));
-  RIC_TRY(allocate(e, error));
+  RIC_TRY(allocate_cycle(e, error));
   RIC_TRY(cycle_equations_set(e, p, error));
   take_itinerary(e, z);
   cut(e);

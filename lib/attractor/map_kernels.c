@@ -6,13 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_SIZE = 4096, ALIGNMENT = 64 };
+#include "numeric/number_block.h"
 
-static double *take(double **store, size_t count) {
-  double *taken = *store;
-  *store += count;
-  return taken;
-}
+enum { MOST_SIZE = 4096, ALIGNMENT = 64 };
 
 ric_status map_block_init(map_block *b, size_t size, size_t width, size_t vectors, ric_error *error) {
   *b = (map_block){.size = size, .width = width};
@@ -23,17 +19,17 @@ ric_status map_block_init(map_block *b, size_t size, size_t width, size_t vector
   if (!b->numbers)
     return ric_fail(error, RIC_ENOMEM, "no memory for %zu maps of size %zu side by side", width, size);
   double *store = b->numbers;
-  b->d = take(&store, width);
-  b->impacts = take(&store, width);
-  b->eta = take(&store, size * width);
-  b->xi = take(&store, size * width);
-  b->kappa = take(&store, size * width);
-  b->L = take(&store, size * size * width);
-  b->v = take(&store, vectors * size * width);
-  b->next_v = take(&store, vectors * size * width);
-  b->weight = take(&store, vectors * width);
-  b->norm = take(&store, vectors * width);
-  b->power = (int64_t *)take(&store, vectors * width);
+  b->d = number_store_take(&store, width);
+  b->impacts = number_store_take(&store, width);
+  b->eta = number_store_take(&store, size * width);
+  b->xi = number_store_take(&store, size * width);
+  b->kappa = number_store_take(&store, size * width);
+  b->L = number_store_take(&store, size * size * width);
+  b->v = number_store_take(&store, vectors * size * width);
+  b->next_v = number_store_take(&store, vectors * size * width);
+  b->weight = number_store_take(&store, vectors * width);
+  b->norm = number_store_take(&store, vectors * width);
+  b->power = (int64_t *)number_store_take(&store, vectors * width);
   return RIC_OK;
 }
 

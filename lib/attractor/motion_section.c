@@ -6,8 +6,8 @@
 #include <string.h>
 
 #include "attractor.h"
-#include "floquet/lyapunov_course.h"
-#include "impact/trajectory_state.h"
+#include "floquet/lyapunov.h"
+#include "impact/trajectory.h"
 #include "numeric/constants.h"
 #include "ricochet/motion_section.h"
 
@@ -243,7 +243,7 @@ static ric_status check_obstacle(const ric_system *system, const ric_motion_sect
   return RIC_OK;
 }
 
-static ric_status check(const ric_system *system, const ric_motion_section_options *o, ric_error *error) {
+static ric_status check_section(const ric_system *system, const ric_motion_section_options *o, ric_error *error) {
   if (o->kind != RIC_SECTION_STROBE && o->kind != RIC_SECTION_IMPACT)
     return ric_fail(error, RIC_EINVAL, "section = %d, expected strobe or impact", (int)o->kind);
   RIC_TRY(check_period(o, error));
@@ -267,7 +267,7 @@ void ric_motion_section_destroy(ric_motion_section **section) {
 ric_status ric_motion_section_create(const ric_system *system, const ric_motion_section_options *options,
                                      ric_motion_section **section, ric_error *error) {
   *section = NULL;
-  RIC_TRY(check(system, options, error));
+  RIC_TRY(check_section(system, options, error));
   ric_motion_section *s = calloc(1, sizeof *s);
   if (!s)
     return ric_fail(error, RIC_ENOMEM, "no memory for a section of motions");
@@ -324,7 +324,7 @@ static double *last_of(const journey *j) {
   return j->section->window + (2 * j->options->period_limit + 1) * j->width;
 }
 
-static void take(journey *j, const double *z) {
+static void record_state(journey *j, const double *z) {
   const ric_attractor_options *o = j->options;
   ric_attractor *a = j->attractor;
   size_t size = j->section->crossings.size, measured = o->transient + o->measure;
@@ -369,7 +369,7 @@ static void take_all(journey *j) {
         end(j, RIC_ATTRACTOR_DIVERGED, reason);
         return;
       }
-    take(j, z);
+    record_state(j, z);
   }
 }
 

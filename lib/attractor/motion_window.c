@@ -62,7 +62,7 @@ static void keep_state(motion_record *record, const ric_trajectory *trajectory, 
     memcpy(record->u, ric_trajectory_u(trajectory), ric_system_speeds(system) * sizeof *record->u);
 }
 
-static ric_status allocate(motion_record *record, const ric_system *system, ric_error *error) {
+static ric_status allocate_record(motion_record *record, const ric_system *system, ric_error *error) {
   record->sequence = calloc(record->count + 1, sizeof *record->sequence);
   record->times = calloc(record->count + 1, sizeof *record->times);
   record->q = calloc(ric_system_coordinates(system), sizeof *record->q);
@@ -80,13 +80,13 @@ static void fold_times(motion_record *record, double period) {
 }
 
 /* First the impacts are counted, then written down: runs do the same thing each time. */
-static ric_status take(motion_record *record, ric_trajectory *trajectory, const ric_system *system, double period,
-                       double t, const double *q, const double *u, ric_error *error) {
+static ric_status record_motion(motion_record *record, ric_trajectory *trajectory, const ric_system *system,
+                                double period, double t, const double *q, const double *u, ric_error *error) {
   listener counter = {.record = record}, writer = {.record = record, .keeps = true, .ends_at_first = true};
   RIC_TRY(ric_trajectory_start(trajectory, t, q, u, error));
   RIC_TRY(run_to(trajectory, t + period, &counter, error));
   record->count = counter.seen;
-  RIC_TRY(allocate(record, system, error));
+  RIC_TRY(allocate_record(record, system, error));
   RIC_TRY(ric_trajectory_start(trajectory, t, q, u, error));
   if (record->count == 0) {
     RIC_TRY(run_to(trajectory, ceil(t / period) * period, &counter, error));
@@ -114,7 +114,7 @@ static ric_status motion_record_take(motion_record *record, const ric_system *sy
   options.flow = motion->flow;
   options.poll = motion->poll;
   RIC_TRY(ric_trajectory_create(system, &options, &trajectory, error));
-  ric_status status = take(record, trajectory, system, period, t, q, u, error);
+  ric_status status = record_motion(record, trajectory, system, period, t, q, u, error);
   ric_trajectory_destroy(&trajectory);
   return status;
 }
@@ -164,8 +164,8 @@ static ric_status set_scaled(ric_system *system, const double *parameters, doubl
 
 /* --- the motion --------------------------------------------------------------------------------------------------- */
 
-static ric_status check(const ric_family_problem *problem, size_t periods, double p, double low, double high, double t,
-                        ric_error *error) {
+static ric_status check_window(const ric_family_problem *problem, size_t periods, double p, double low, double high,
+                               double t, ric_error *error) {
   if (problem->motion.kind != RIC_MOTION_FORCED)
     return ric_fail(error, RIC_EINVAL, "motion.kind = %d, expected forced motions", (int)problem->motion.kind);
   if (periods < 1)
@@ -313,7 +313,7 @@ static int see_start(walk *w, const ric_family_point *point) {
 }
 
 /* Of the points that follow, verdicts next to an edge may be undecided. */
-static int see(const ric_family_point *point, void *user) {
+static int see_window_point(const ric_family_point *point, void *user) {
   walk *w = user;
   search *s = w->s;
   w->edge = (ric_motion_edge){.kind = point->kind, .p = point->parameter * s->scale};
@@ -334,7 +334,7 @@ static ric_status follow(search *s, walk *w, const ric_family_options *options, 
   ric_curve_run run;
   w->found = w->late = false;
   RIC_TRY(ric_family_create(&s->scaled, options, &family, error));
-  ric_status status = ric_family_follow(family, s->last, s->last_at, NULL, see, w, &run, error);
+  ric_status status = ric_family_follow(family, s->last, s->last_at, NULL, see_window_point, w, &run, error);
   ric_family_destroy(&family);
   RIC_TRY(status);
   if (!s->window.stable)
@@ -386,7 +386,7 @@ ric_status ric_motion_window_find(const ric_family_problem *problem, size_t peri
                                   double t, const double *q, const double *u, const ric_family_options *options,
                                   ric_motion_window *window, ric_error *error) {
   search s = {.problem = problem, .periods = periods, .p = p, .low = low, .high = high};
-  RIC_TRY(check(problem, periods, p, low, high, t, error));
+  RIC_TRY(check_window(problem, periods, p, low, high, t, error));
   set_up(&s, options);
   ric_status status = find_window(&s, t, q, u, error);
   if (status == RIC_OK)

@@ -135,7 +135,7 @@ static ric_status check_steps(const ric_curve_options *o, ric_error *error) {
   return RIC_OK;
 }
 
-static ric_status check(const ric_curve_problem *problem, const ric_curve_options *o, ric_error *error) {
+static ric_status check_curve(const ric_curve_problem *problem, const ric_curve_options *o, ric_error *error) {
   if (problem->unknowns < 1 || !problem->residual)
     return ric_fail(error, RIC_EINVAL, "a problem of %zu unknowns%s, expected at least 1 and a residual",
                     problem->unknowns, problem->residual ? "" : " without a residual");
@@ -164,7 +164,7 @@ static double *place_node(const ric_curve *c, curve_node *node, double *block) {
   return node->tests + c->problem.tests;
 }
 
-static ric_status allocate(ric_curve *c, ric_error *error) {
+static ric_status allocate_curve(ric_curve *c, ric_error *error) {
   size_t n = c->problem.unknowns, size = n + 1, tests = c->problem.tests;
   size_t nodes = tests + 2 + 6 + CURVE_PAST, numbers = bordered_numbers(n) + 3 * size + nodes * (2 * size + tests);
   c->block = calloc(numbers, sizeof *c->block);
@@ -204,7 +204,7 @@ void ric_curve_destroy(ric_curve **curve) {
 ric_status ric_curve_create(const ric_curve_problem *problem, const ric_curve_options *options, ric_curve **curve,
                             ric_error *error) {
   ric_curve_options o = options ? *options : ric_curve_options_default();
-  RIC_TRY(check(problem, &o, error));
+  RIC_TRY(check_curve(problem, &o, error));
   ric_curve *c = calloc(1, sizeof *c);
   if (!c)
     return ric_fail(error, RIC_ENOMEM, "no memory for a curve");
@@ -212,7 +212,7 @@ ric_status ric_curve_create(const ric_curve_problem *problem, const ric_curve_op
   c->options = o;
   c->linear.problem = &c->problem;
   c->linear.poll = o.poll;
-  ric_status status = allocate(c, error);
+  ric_status status = allocate_curve(c, error);
   if (status != RIC_OK)
     ric_curve_destroy(&c);
   else

@@ -157,7 +157,7 @@ static cubic step_cubic(const ric_curve *c) {
 }
 
 /* Whether `to` with its tangent can be the next point. */
-static ric_status judge(const ric_curve *c, ric_error *error) {
+static ric_status check_next_point(const ric_curve *c, ric_error *error) {
   double turn = step_turn(c), chord = curve_distance(c, c->from.x, c->to.x);
   double rounding = sqrt(c->options.newton_tol) * (1 + curve_norm(c, c->to.x));
   cubic q = step_cubic(c);
@@ -215,13 +215,13 @@ static ric_status step_to_bound(ric_curve *c, double h, ric_error *error) {
   double p = parameter(c, &c->from), bound = bound_before(c, parameter(c, &c->to));
   predict(c, h * (bound - p) / (parameter(c, &c->to) - p));
   RIC_TRY(correct_at_bound(c, bound, 2 * h, error));
-  return judge(c, error);
+  return check_next_point(c, error);
 }
 
 static ric_status step_freely(ric_curve *c, double h, ric_error *error) {
   predict(c, h);
   RIC_TRY(correct(c, c->row, error));
-  return judge(c, error);
+  return check_next_point(c, error);
 }
 
 /* A step that has left the range is moved back to its end along the cubic. */

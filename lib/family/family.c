@@ -213,7 +213,7 @@ static ric_status copy_hits(ric_family *f, ric_error *error) {
   return RIC_OK;
 }
 
-static ric_status check(const ric_family_problem *p, const ric_family_options *o, ric_error *error) {
+static ric_status check_family(const ric_family_problem *p, const ric_family_options *o, ric_error *error) {
   size_t numbers = ric_system_coordinates(p->system) + ric_system_speeds(p->system);
   if (p->parameters < 1 || p->parameters > 2 || (p->parameters == 2 && !p->set))
     return ric_fail(error, RIC_EINVAL, "parameters = %zu, expected 1, or 2 with a function that sets them",
@@ -224,7 +224,7 @@ static ric_status check(const ric_family_problem *p, const ric_family_options *o
   return RIC_OK;
 }
 
-static ric_status allocate(ric_family *f, ric_error *error) {
+static ric_status allocate_family(ric_family *f, ric_error *error) {
   size_t n = f->unknowns;
   f->block = calloc(3 * n, sizeof *f->block);
   if (!f->block)
@@ -245,7 +245,7 @@ static ric_status build(ric_family *f, ric_error *error) {
   f->unknowns = ric_shooting_unknowns(f->shooting);
   f->impacts = m->start_count + m->half_count + m->count;
   f->tests = TEST_IMPACTS + f->impacts + (m->count > 0 ? f->shooting->arcs.arc_count : 0);
-  RIC_TRY(allocate(f, error));
+  RIC_TRY(allocate_family(f, error));
   const ric_curve_problem curve = {
       .unknowns = f->unknowns, .residual = residual, .tests = f->tests, .test = test, .user = f};
   return ric_curve_create(&curve, &f->options.curve, &f->curve, error);
@@ -269,7 +269,7 @@ ric_status ric_family_create(const ric_family_problem *problem, const ric_family
                              ric_error *error) {
   ric_family_options o = options ? *options : ric_family_options_default();
   *family = NULL;
-  RIC_TRY(check(problem, &o, error));
+  RIC_TRY(check_family(problem, &o, error));
   ric_family *f = calloc(1, sizeof *f);
   if (!f)
     return ric_fail(error, RIC_ENOMEM, "no memory for a family");

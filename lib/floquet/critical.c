@@ -4,8 +4,8 @@
 
 #include <gsl/gsl_errno.h>
 
+#include "orbit_multipliers.h"
 #include "ricochet/orbit_multipliers.h"
-#include "orbit_spectrum.h"
 
 /* Rounding of alpha, over the largest entry of the reduced matrix; ten times what is seen, and its root for the
  * imaginary part of two that meet. */
@@ -97,12 +97,12 @@ static ric_status take_census(family *f, double parameter, census *c) {
       f->orbit.outcome == RIC_ADMISSIBLE || f->orbit.outcome == RIC_INADMISSIBLE || f->orbit.outcome == RIC_RESONANT;
   if (!c->known)
     return RIC_OK;
-  RIC_TRY(kicks_of_orbit(&f->spectrum->kicks, &f->chain, f->pattern, &f->orbit, f->solver->options.grazing_tol,
-                         &grazing, f->error));
+  RIC_TRY(orbit_impacts_find(&f->spectrum->impacts, &f->chain, f->pattern, &f->orbit, f->solver->options.grazing_tol,
+                             &grazing, f->error));
   c->known = grazing == f->orbit.impacts;
   if (!c->known)
     return RIC_OK;
-  RIC_TRY(reduced_compute(&f->spectrum->reduced, &f->chain, &f->spectrum->kicks, &f->orbit, f->error));
+  RIC_TRY(reduced_compute(&f->spectrum->reduced, &f->chain, &f->spectrum->impacts, &f->orbit, f->error));
   const even_spectrum *spectrum = &f->spectrum->reduced.spectrum;
   sort_alpha(c, spectrum->alpha, spectrum->count, rounding * fmax(1, spectrum->largest));
   return RIC_OK;
@@ -193,8 +193,8 @@ static ric_status search(family *f, double low, double high, size_t points) {
   return RIC_OK;
 }
 
-static ric_status check(const ric_chain *chain, const ric_pattern *pattern, double low, double high, size_t points,
-                        ric_error *error) {
+static ric_status check_family(const ric_chain *chain, const ric_pattern *pattern, double low, double high,
+                               size_t points, ric_error *error) {
   RIC_TRY(ric_chain_check(chain, error));
   if (ric_pattern_particles(pattern) != chain->particles)
     return ric_fail(error, RIC_EINVAL, "pattern of %zu particles, expected %zu", ric_pattern_particles(pattern),
@@ -221,7 +221,7 @@ ric_status ric_orbit_critical_points(ric_orbit_solver *solver, const ric_chain *
               .capacity = capacity,
               .error = error};
   *count = 0;
-  RIC_TRY(check(chain, pattern, low, high, points, error));
+  RIC_TRY(check_family(chain, pattern, low, high, points, error));
   RIC_TRY(orbit_spectrum_of(solver, &f.spectrum, error));
   RIC_TRY(ric_orbit_init(&f.orbit, chain->particles, ric_pattern_impacts(pattern), error));
   gsl_error_handler_t *handler = gsl_set_error_handler_off();

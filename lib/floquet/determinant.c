@@ -119,13 +119,13 @@ static size_t count_on(secular *s, const arc *a, int depth) {
   return count_on(s, &left, depth - 1) + count_on(s, &right, depth - 1);
 }
 
-size_t circle_count(secular *s, double from, int depth) {
+size_t unit_circle_count(secular *s, double from, int depth) {
   arc whole = whole_circle(s, from);
   return hidden_below(s, INFINITY) - hidden_below(s, from) + count_on(s, &whole, depth);
 }
 
 /** The same for the angles 0 < t < band. */
-static size_t circle_near_one(secular *s, double band) {
+static size_t unit_circle_near_one(secular *s, double band) {
   long signs;
   arc near = {.high = band,
               .negative_low = secular_negative(s, 0),
@@ -213,7 +213,8 @@ static void find_on(search *x, const arc *a, int spare) {
  *  @param angles  [n], or NULL to count; @param count  set to their number
  *  @param wanted  no need to look for more
  *  @returns RIC_ESTOPPED */
-static ric_status circle_find(secular *s, double from, size_t wanted, double *angles, size_t *count, ric_error *error) {
+static ric_status unit_circle_find(secular *s, double from, size_t wanted, double *angles, size_t *count,
+                                   ric_error *error) {
   arc whole = whole_circle(s, from);
   search x = {.s = s, .angles = angles, .room = angles ? s->particles : 0};
   for (x.spare = 2; x.spare <= 8; x.spare += 3) {
@@ -269,7 +270,7 @@ static void look_near_one(secular *s, double band, told *t) {
     t->from = t->near_one > 0 ? band : 0;
     return;
   }
-  t->near_one = 2 * circle_near_one(s, band);
+  t->near_one = 2 * unit_circle_near_one(s, band);
   t->from = 0;
 }
 
@@ -283,7 +284,7 @@ static ric_status tell(secular *s, const ric_orbit_multiplier_options *o, told *
   size_t close = 1 + (t->from > 0 ? t->near_one / 2 : 0); /* pairs */
   for (int stage = 0; stage < 3 && !all_told(s, t); stage++) {
     if (stage < 2)
-      t->on_circle = close + circle_count(s, t->from, depth[stage]);
+      t->on_circle = close + unit_circle_count(s, t->from, depth[stage]);
     bool counted = all_told(s, t) || count_outside(s, distances[stage], t);
     if (s->stopped)
       return ric_fail(error, RIC_ESTOPPED, "stopped at |mu| = 1 + %g", distances[stage]);
@@ -293,7 +294,7 @@ static ric_status tell(secular *s, const ric_orbit_multiplier_options *o, told *
   if (all_told(s, t) || t->outside > 0)
     return RIC_OK;
   size_t found;
-  RIC_TRY(circle_find(s, t->from, s->particles - close, NULL, &found, error));
+  RIC_TRY(unit_circle_find(s, t->from, s->particles - close, NULL, &found, error));
   t->on_circle = close + found > t->on_circle ? close + found : t->on_circle;
   return RIC_OK;
 }
@@ -303,9 +304,10 @@ static void locate(secular *s, const told *t, ric_multipliers *m) {
   size_t between = 0;
   m->count = 0;
   if (t->farther > 0)
-    outside_find(s, t->far, INFINITY, t->farther, m->mu, m->dimension, &m->count);
+    multipliers_outside_find(s, t->far, INFINITY, t->farther, m->mu, m->dimension, &m->count);
   if (t->outside > t->farther && t->outside - t->farther <= MOST_BETWEEN)
-    outside_find(s, t->contour, t->far, t->outside - t->farther, m->mu + m->count, m->dimension - m->count, &between);
+    multipliers_outside_find(s, t->contour, t->far, t->outside - t->farther, m->mu + m->count, m->dimension - m->count,
+                             &between);
   m->count += between;
 }
 
@@ -333,7 +335,7 @@ static ric_status complete(secular *s, double from, const ric_orbit_multiplier_o
   double *angles = malloc(s->particles * sizeof *angles);
   if (!angles)
     return ric_fail(error, RIC_ENOMEM, "no memory for %zu multipliers", s->particles);
-  ric_status status = circle_find(s, from, wanted, angles, &found, error);
+  ric_status status = unit_circle_find(s, from, wanted, angles, &found, error);
   put_inverses(m);
   put_on_circle(m, angles, found);
   free(angles);

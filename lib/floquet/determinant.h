@@ -24,7 +24,7 @@
 /** A lower bound of the number of pairs on the circle at angles above `from`, without the one at 1.
  *  @param from  0, or beyond multipliers that are too close to 1 to be told from rounding
  *  @param depth  how often arcs may be divided to tell modes of different signs apart */
-size_t circle_count(secular *s, double from, int depth);
+size_t unit_circle_count(secular *s, double from, int depth);
 
 /* The multipliers of an orbit by its determinant.
  *

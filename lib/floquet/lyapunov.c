@@ -1,4 +1,4 @@
-#include "lyapunov_course.h"
+#include "lyapunov.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -7,7 +7,7 @@
 
 #include <gsl/gsl_errno.h>
 
-#include "impact/trajectory_state.h"
+#include "impact/trajectory.h"
 #include "model/system_model.h"
 
 ric_lyapunov_options ric_lyapunov_options_default(void) {
@@ -19,7 +19,7 @@ static double least_interval(double t) {
   return 1e-12 * (1 + fabs(t));
 }
 
-static ric_status check(const ric_lyapunov_options *o, size_t size, double end, ric_error *error) {
+static ric_status check_course(const ric_lyapunov_options *o, size_t size, double end, ric_error *error) {
   if (o->count > size)
     return ric_fail(error, RIC_EINVAL, "count = %zu, expected at most %zu exponents (or 0: all)", o->count, size);
   if (!(o->interval > least_interval(end)))
@@ -29,7 +29,7 @@ static ric_status check(const ric_lyapunov_options *o, size_t size, double end, 
   return RIC_OK;
 }
 
-static ric_status allocate(lyapunov_course *c, ric_error *error) {
+static ric_status allocate_course(lyapunov_course *c, ric_error *error) {
   c->vectors = calloc(c->size * c->count, sizeof *c->vectors);
   c->growth = calloc(2 * c->count, sizeof *c->growth);
   if (!c->vectors || !c->growth)
@@ -44,7 +44,7 @@ ric_status lyapunov_course_init(lyapunov_course *c, ric_trajectory *trajectory, 
   *c = (lyapunov_course){.trajectory = trajectory, .options = *options, .n = system->coordinates};
   c->size = c->n + system->speeds;
   c->count = options->count ? options->count : c->size;
-  RIC_TRY(allocate(c, error));
+  RIC_TRY(allocate_course(c, error));
   lyapunov_course_restart(c);
   return RIC_OK;
 }
@@ -183,7 +183,7 @@ ric_status ric_lyapunov_run(ric_trajectory *trajectory, double end, const ric_ly
   size_t size = trajectory->system->coordinates + trajectory->system->speeds;
   lyapunov_course c = {0};
   *lyapunov = (ric_lyapunov){0};
-  RIC_TRY(check(&o, size, end, error));
+  RIC_TRY(check_course(&o, size, end, error));
   for (size_t k = 0; k < (o.count ? o.count : size); k++)
     exponents[k] = NAN;
   gsl_error_handler_t *handler = gsl_set_error_handler_off();

@@ -8,8 +8,8 @@
 
 #include "determinant.h"
 #include "multipliers.h"
+#include "orbit_multipliers.h"
 #include "ricochet/monodromy.h"
-#include "orbit_spectrum.h"
 
 ric_orbit_multiplier_options ric_orbit_multiplier_options_default(void) {
   return (ric_orbit_multiplier_options){.method = RIC_MULTIPLIERS_AUTO, .judge = ric_multiplier_options_default()};
@@ -26,8 +26,8 @@ static ric_multiplier_method method_for(const ric_orbit_multiplier_options *o, s
   return n <= RIC_REDUCED_PARTICLES ? RIC_MULTIPLIERS_REDUCED : RIC_MULTIPLIERS_DETERMINANT;
 }
 
-static ric_status check(const ric_chain *chain, const ric_pattern *pattern, const ric_orbit *orbit,
-                        const ric_orbit_multiplier_options *o, const ric_multipliers *m, ric_error *error) {
+static ric_status check_orbit(const ric_chain *chain, const ric_pattern *pattern, const ric_orbit *orbit,
+                              const ric_orbit_multiplier_options *o, const ric_multipliers *m, ric_error *error) {
   size_t n = chain->particles;
   RIC_TRY(ric_chain_check(chain, error));
   RIC_TRY(multiplier_options_check(&o->judge, error));
@@ -60,7 +60,7 @@ static bool has_derivative(const ric_orbit *orbit) {
 
 static void destroy_spectrum(void *workspace) {
   orbit_spectrum *s = workspace;
-  kicks_clear(&s->kicks);
+  orbit_impacts_clear(&s->impacts);
   reduced_clear(&s->reduced);
   secular_clear(&s->secular);
   free(s);
@@ -79,7 +79,7 @@ ric_status orbit_spectrum_of(ric_orbit_solver *solver, orbit_spectrum **spectrum
 
 static ric_status by_reduced(orbit_spectrum *s, const ric_chain *chain, const ric_orbit *orbit,
                              const ric_multiplier_options *o, ric_multipliers *m, ric_error *error) {
-  RIC_TRY(reduced_compute(&s->reduced, chain, &s->kicks, orbit, error));
+  RIC_TRY(reduced_compute(&s->reduced, chain, &s->impacts, orbit, error));
   even_spectrum_multipliers(&s->reduced.spectrum, o, m);
   return RIC_OK;
 }
@@ -136,7 +136,7 @@ static ric_status compute(ric_orbit_solver *solver, const ric_chain *chain, cons
   size_t grazing;
   orbit_spectrum *s = NULL;
   RIC_TRY(orbit_spectrum_of(solver, &s, error));
-  RIC_TRY(kicks_of_orbit(&s->kicks, chain, pattern, orbit, solver->options.grazing_tol, &grazing, error));
+  RIC_TRY(orbit_impacts_find(&s->impacts, chain, pattern, orbit, solver->options.grazing_tol, &grazing, error));
   if (grazing < orbit->impacts) {
     char reason[sizeof m->reason];
     snprintf(reason, sizeof reason, "grazing: impulse %.3g of particle %zu", orbit->impulse[grazing],
@@ -148,7 +148,7 @@ static ric_status compute(ric_orbit_solver *solver, const ric_chain *chain, cons
   case RIC_MULTIPLIERS_MONODROMY:
     return by_monodromy(solver, chain, orbit, o, m, error);
   case RIC_MULTIPLIERS_DETERMINANT:
-    RIC_TRY(secular_prepare(&s->secular, chain, &s->kicks, orbit->period, error));
+    RIC_TRY(secular_prepare(&s->secular, chain, &s->impacts, orbit->period, error));
     return determinant_multipliers(&s->secular, o, m, error);
   case RIC_MULTIPLIERS_AUTO:
   case RIC_MULTIPLIERS_REDUCED:
@@ -162,7 +162,7 @@ ric_status ric_orbit_multipliers(ric_orbit_solver *solver, const ric_chain *chai
                                  ric_multipliers *m, ric_error *error) {
   ric_error own, *e = error ? error : &own;
   ric_orbit_multiplier_options o = options ? *options : ric_orbit_multiplier_options_default();
-  RIC_TRY(check(chain, pattern, orbit, &o, m, e));
+  RIC_TRY(check_orbit(chain, pattern, orbit, &o, m, e));
   ric_multipliers_fail(m, "not computed");
   if (!has_derivative(orbit)) {
     fail_outcome(orbit, m);

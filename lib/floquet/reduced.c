@@ -7,17 +7,17 @@
 #include "model/image_ring.h"
 #include "numeric/constants.h"
 
-void kicks_clear(kick_list *list) {
-  free(list->kicks);
-  *list = (kick_list){0};
+void orbit_impacts_clear(orbit_impacts *list) {
+  free(list->items);
+  *list = (orbit_impacts){0};
 }
 
-static ric_status make_room(kick_list *list, size_t count, ric_error *error) {
+static ric_status make_room(orbit_impacts *list, size_t count, ric_error *error) {
   if (count > list->capacity) {
-    kick *more = realloc(list->kicks, count * sizeof *more);
+    orbit_impact *more = realloc(list->items, count * sizeof *more);
     if (!more)
       return ric_fail(error, RIC_ENOMEM, "no memory for %zu impacts", count);
-    list->kicks = more;
+    list->items = more;
     list->capacity = count;
   }
   list->count = count;
@@ -38,13 +38,13 @@ static double largest_displacement(const ric_orbit *orbit) {
   return largest;
 }
 
-ric_status kicks_of_orbit(kick_list *list, const ric_chain *chain, const ric_pattern *pattern, const ric_orbit *orbit,
-                          double grazing_tol, size_t *grazing, ric_error *error) {
+ric_status orbit_impacts_find(orbit_impacts *list, const ric_chain *chain, const ric_pattern *pattern,
+                              const ric_orbit *orbit, double grazing_tol, size_t *grazing, ric_error *error) {
   double tiny = grazing_tol * largest_displacement(orbit);
   RIC_TRY(make_room(list, orbit->impacts, error));
   *grazing = list->count;
   for (size_t r = 0; r < list->count; r++) {
-    kick *k = &list->kicks[r];
+    orbit_impact *k = &list->items[r];
     k->particle = ric_pattern_impact(pattern, r);
     k->at_half = ric_pattern_role(pattern, k->particle) == RIC_ROLE_HALF;
     k->impulse = orbit->impulse[r];
@@ -118,7 +118,7 @@ void reduced_clear(reduced *r) {
   flow_kernels_clear(&r->kernels);
   even_spectrum_clear(&r->spectrum);
   free(r->rows);
-  free(r->kick_of);
+  free(r->impact_of);
   *r = (reduced){0};
 }
 
@@ -127,8 +127,8 @@ static ric_status prepare_reduced(reduced *r, size_t n, ric_error *error) {
     return RIC_OK;
   reduced_clear(r);
   r->rows = malloc(2 * n * sizeof *r->rows);
-  r->kick_of = malloc(n * sizeof *r->kick_of);
-  ric_status status = r->rows && r->kick_of
+  r->impact_of = malloc(n * sizeof *r->impact_of);
+  ric_status status = r->rows && r->impact_of
                           ? even_spectrum_reserve(&r->spectrum, n, error)
                           : ric_fail(error, RIC_ENOMEM, "no memory for the reduced matrix of %zu particles", n);
   if (status == RIC_OK)
@@ -138,19 +138,19 @@ static ric_status prepare_reduced(reduced *r, size_t n, ric_error *error) {
   return status;
 }
 
-static void find_kicks(reduced *r, const kick_list *kicks) {
+static void place_impacts(reduced *r, const orbit_impacts *impacts) {
   for (size_t i = 0; i < r->particles; i++)
-    r->kick_of[i] = NULL;
-  for (size_t i = 0; i < kicks->count; i++)
-    if (!kicks->kicks[i].at_half)
-      r->kick_of[kicks->kicks[i].particle] = &kicks->kicks[i];
+    r->impact_of[i] = NULL;
+  for (size_t i = 0; i < impacts->count; i++)
+    if (!impacts->items[i].at_half)
+      r->impact_of[impacts->items[i].particle] = &impacts->items[i];
 }
 
 /* Row i of the block of P2 K2 times a flow: a displacement, or the speed of an impacting particle after its half kick,
  * reversed. K2 on the right leaves the columns of the block alone. */
 static double row_entry(const reduced *r, const flow_kernel *f, const ric_chain *chain, size_t i, bool speed_column,
                         size_t j) {
-  const kick *k = r->kick_of[i];
+  const orbit_impact *k = r->impact_of[i];
   double displacement = flow_kernel_entry(f, chain, false, i, speed_column, j);
   if (!k)
     return displacement;
@@ -161,16 +161,16 @@ static void free_flow(reduced *r, const ric_chain *chain) {
   for (size_t i = 0; i < r->particles; i++)
     for (size_t j = 0; j < r->particles; j++)
       r->spectrum.block->data[i * r->spectrum.block->tda + j] =
-          row_entry(r, &r->kernels.full, chain, i, r->kick_of[j] != NULL, j);
+          row_entry(r, &r->kernels.full, chain, i, r->impact_of[j] != NULL, j);
 }
 
 /* An impact at T/2 adds F (S - 1) F, of rank two: S - 1 = -2 on (q_k, v_k), and s from q_k to v_k. */
-static void add_impact(reduced *r, const ric_chain *chain, const kick *k) {
+static void add_impact(reduced *r, const ric_chain *chain, const orbit_impact *k) {
   size_t n = r->particles;
   const flow_kernel *half = &r->kernels.half;
   double *to_displacement = r->rows, *to_speed = r->rows + n;
   for (size_t j = 0; j < n; j++) {
-    bool speed = r->kick_of[j] != NULL;
+    bool speed = r->impact_of[j] != NULL;
     double q = flow_kernel_entry(half, chain, false, k->particle, speed, j);
     to_displacement[j] = -2 * q;
     to_speed[j] = k->slope * q - 2 * flow_kernel_entry(half, chain, true, k->particle, speed, j);
@@ -188,18 +188,18 @@ static void add_impact(reduced *r, const ric_chain *chain, const kick *k) {
 static void energy_gradient(reduced *r, const ric_chain *chain, const ric_orbit *orbit) {
   ric_chain_acceleration(chain, orbit->q, r->rows);
   for (size_t i = 0; i < r->particles; i++)
-    r->spectrum.left->data[i * r->spectrum.left->stride] = r->kick_of[i] ? orbit->v[i] : -r->rows[i];
+    r->spectrum.left->data[i * r->spectrum.left->stride] = r->impact_of[i] ? orbit->v[i] : -r->rows[i];
 }
 
-ric_status reduced_compute(reduced *r, const ric_chain *chain, const kick_list *kicks, const ric_orbit *orbit,
+ric_status reduced_compute(reduced *r, const ric_chain *chain, const orbit_impacts *impacts, const ric_orbit *orbit,
                            ric_error *error) {
   RIC_TRY(prepare_reduced(r, chain->particles, error));
   RIC_TRY(flow_kernels_compute(&r->kernels, chain, orbit->period, error));
-  find_kicks(r, kicks);
+  place_impacts(r, impacts);
   free_flow(r, chain);
-  for (size_t i = 0; i < kicks->count; i++)
-    if (kicks->kicks[i].at_half)
-      add_impact(r, chain, &kicks->kicks[i]);
+  for (size_t i = 0; i < impacts->count; i++)
+    if (impacts->items[i].at_half)
+      add_impact(r, chain, &impacts->items[i]);
   energy_gradient(r, chain, orbit);
   return even_spectrum_find(&r->spectrum, true, error);
 }

@@ -16,26 +16,26 @@
  * p_k = -2 v_k- this is s = -4 a_k / p_k. */
 
 /** One impact. */
-typedef struct kick {
+typedef struct orbit_impact {
   size_t particle;
   bool at_half;
   double impulse; /* p */
   double slope;   /* s */
-} kick;
+} orbit_impact;
 
 /** In the order of the pattern: those at t = 0 first. Zeroed once, keeps its memory. */
-typedef struct kick_list {
-  kick *kicks;
+typedef struct orbit_impacts {
+  orbit_impact *items;
   size_t count, capacity;
-} kick_list;
+} orbit_impacts;
 
-void kicks_clear(kick_list *list);
+void orbit_impacts_clear(orbit_impacts *list);
 
 /** Reads the impacts of an orbit with a state.
  *  @param grazing_tol  relative to the largest displacement: impulses up to it have no saltation matrix
  *  @param grazing  set to the first impact with such an impulse, or to the number of impacts */
-ric_status kicks_of_orbit(kick_list *list, const ric_chain *chain, const ric_pattern *pattern, const ric_orbit *orbit,
-                          double grazing_tol, size_t *grazing, ric_error *error);
+ric_status orbit_impacts_find(orbit_impacts *list, const ric_chain *chain, const ric_pattern *pattern,
+                              const ric_orbit *orbit, double grazing_tol, size_t *grazing, ric_error *error);
 
 /* Entries of the free flow of a chain over T and T/2, from kernels on its image ring.
  *
@@ -69,8 +69,8 @@ typedef struct flow_kernels {
 typedef struct reduced {
   size_t particles;
   flow_kernels kernels;
-  double *rows;         /* [2][n] */
-  const kick **kick_of; /* [n] the impact of a particle at t = 0, NULL if it has none */
+  double *rows;                   /* [2][n] */
+  const orbit_impact **impact_of; /* [n] the impact of a particle at t = 0, NULL if it has none */
   even_spectrum spectrum;
 } reduced;
 
@@ -78,7 +78,7 @@ void reduced_clear(reduced *r);
 
 /** Finds the spectrum; O(n^3).
  *  @returns RIC_ENOMEM, RIC_ENUMERIC when the eigenvalues do not converge */
-ric_status reduced_compute(reduced *r, const ric_chain *chain, const kick_list *kicks, const ric_orbit *orbit,
+ric_status reduced_compute(reduced *r, const ric_chain *chain, const orbit_impacts *impacts, const ric_orbit *orbit,
                            ric_error *error);
 
 #endif

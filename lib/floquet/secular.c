@@ -90,7 +90,7 @@ double secular_bytes(const secular *s) {
 static bool set_shape(secular *s, const ric_chain *chain, size_t mode, size_t seen) {
   double largest = 0, rounding = 1e-12 / sqrt((double)s->particles);
   for (size_t k = 0; k < s->impacts; k++) {
-    double shape = ric_chain_mode_shape(chain, mode, s->kicks[k].particle);
+    double shape = ric_chain_mode_shape(chain, mode, s->impact[k].particle);
     s->modes.shape[k * s->particles + seen] = shape;
     largest = fmax(largest, fabs(shape));
   }
@@ -101,8 +101,8 @@ static void set_coefficients(secular *s, size_t j, double omega, double x) {
   secular_modes *a = &s->modes;
   double start = 0, half = 0; /* the orbit's impulses as the mode feels them */
   for (size_t k = 0; k < s->impacts; k++) {
-    double felt = a->shape[k * s->particles + j] * s->kicks[k].impulse;
-    *(s->kicks[k].at_half ? &half : &start) += felt;
+    double felt = a->shape[k * s->particles + j] * s->impact[k].impulse;
+    *(s->impact[k].at_half ? &half : &start) += felt;
   }
   double cot = omega / (2 * tan(x)), csc = omega / (2 * sin(x));
   a->below_one[j] = 2 * sin(x) * sin(x);
@@ -136,17 +136,17 @@ static void set_modes(secular *s, const ric_chain *chain, double period) {
   qsort(s->poles, s->particles, sizeof *s->poles, by_angle);
 }
 
-ric_status secular_prepare(secular *s, const ric_chain *chain, const kick_list *kicks, double period,
+ric_status secular_prepare(secular *s, const ric_chain *chain, const orbit_impacts *impacts, double period,
                            ric_error *error) {
-  RIC_TRY(place_modes(s, chain->particles, kicks->count, error));
-  RIC_TRY(place_matrices(s, kicks->count, error));
+  RIC_TRY(place_modes(s, chain->particles, impacts->count, error));
+  RIC_TRY(place_matrices(s, impacts->count, error));
   s->particles = chain->particles;
-  s->impacts = kicks->count;
-  s->kicks = kicks->kicks;
+  s->impacts = impacts->count;
+  s->impact = impacts->items;
   s->evaluations = 0;
   s->largest = 0;
   for (size_t k = 1; k < s->impacts; k++)
-    if (fabs(s->kicks[k].impulse) > fabs(s->kicks[s->largest].impulse))
+    if (fabs(s->impact[k].impulse) > fabs(s->impact[s->largest].impulse))
       s->largest = k;
   set_modes(s, chain, period);
   return RIC_OK;
@@ -171,7 +171,7 @@ static void sum_pair(secular *s, size_t k, size_t l, double complex beta) {
   const secular_modes *a = &s->modes;
   const double *first = a->shape + k * s->particles, *second = a->shape + l * s->particles;
   double sum[6] = {0};
-  bool same = s->kicks[k].at_half == s->kicks[l].at_half;
+  bool same = s->impact[k].at_half == s->impact[l].at_half;
   const double *position = same ? a->same_position : a->other_position, *speed = same ? a->same_speed : a->other_speed;
   for (size_t j = 0; j < a->seen; j++) {
     double both = first[j] * second[j], re = both * a->re[j], im = both * a->im[j];
@@ -192,7 +192,7 @@ static void sum_pair(secular *s, size_t k, size_t l, double complex beta) {
 /* Derivative of the mean velocity of impact k along the orbit, divided difference from alpha = 1. */
 static void sum_along(secular *s, size_t k, double complex beta) {
   const secular_modes *a = &s->modes;
-  bool half = s->kicks[k].at_half;
+  bool half = s->impact[k].at_half;
   const double *shape = a->shape + k * s->particles, *plain = half ? a->along_half : a->along_start;
   const double *with_beta = half ? a->along_half_beta : a->along_start_beta;
   double sum[4] = {0};
@@ -233,10 +233,10 @@ static void set_matrix(secular *s, double complex zeta) {
       set_entry(s, k, l, 2 * s->position[i]);
       set_entry(s, k, m + l, 2 * square * s->mean[i]);
       set_entry(s, m + k, l, -2 * s->mean[i]);
-      set_entry(s, m + k, m + l, -2 * (s->speed[i] + (k == l ? s->kicks[k].slope / 4 : 0)));
-      along += s->mean[i] * s->kicks[l].impulse;
+      set_entry(s, m + k, m + l, -2 * (s->speed[i] + (k == l ? s->impact[k].slope / 4 : 0)));
+      along += s->mean[i] * s->impact[l].impulse;
     }
-    double impulse = s->kicks[s->largest].impulse;
+    double impulse = s->impact[s->largest].impulse;
     set_entry(s, k, m + s->largest, along / impulse);
     set_entry(s, m + k, m + s->largest, -2 * s->along[k] / impulse);
   }
@@ -303,7 +303,7 @@ static void set_symmetric(secular *s, double angle) {
   for (size_t k = 0; k < m; k++)
     for (size_t l = 0; l < m; l++) {
       size_t i = k * m + l;
-      double slope = k == l ? s->kicks[k].slope / 4 : 0;
+      double slope = k == l ? s->impact[k].slope / 4 : 0;
       gsl_matrix_set(s->symmetric, k, l, creal(s->position[i]));
       gsl_matrix_set(s->symmetric, k, m + l, mean * creal(s->mean[i]));
       gsl_matrix_set(s->symmetric, m + k, l, mean * creal(s->mean[i]));

@@ -49,9 +49,9 @@ typedef struct secular_modes {
 
 typedef struct secular {
   size_t particles, impacts;
-  const kick *kicks;   /* [m], borrowed */
-  size_t largest;      /* impact with the largest impulse: its column is the one replaced */
-  secular_pole *poles; /* [n], by angle */
+  const orbit_impact *impact; /* [m], borrowed */
+  size_t largest;             /* impact with the largest impulse: its column is the one replaced */
+  secular_pole *poles;        /* [n], by angle */
   secular_modes modes;
   double *store;
   size_t capacity, pole_capacity, impact_capacity;
@@ -68,8 +68,9 @@ typedef struct secular {
 
 void secular_clear(secular *s);
 
-/** Sets up the modes for an orbit; zeroed once, keeps its memory. @param kicks  borrowed until the next call */
-ric_status secular_prepare(secular *s, const ric_chain *chain, const kick_list *kicks, double period, ric_error *error);
+/** Sets up the modes for an orbit; zeroed once, keeps its memory. @param impacts  borrowed until the next call */
+ric_status secular_prepare(secular *s, const ric_chain *chain, const orbit_impacts *impacts, double period,
+                           ric_error *error);
 
 /** log g(exp zeta); the imaginary part up to multiples of 2 pi. O(n m^2). */
 double complex secular_log(secular *s, double complex zeta);

@@ -266,7 +266,8 @@ static double far_away(secular *s, double radius) {
   return far;
 }
 
-void outside_find(secular *s, double low, double high, size_t expected, ric_complex *mu, size_t room, size_t *count) {
+void multipliers_outside_find(secular *s, double low, double high, size_t expected, ric_complex *mu, size_t room,
+                              size_t *count) {
   found x = {.s = s, .mu = mu, .room = room};
   double far = high < INFINITY ? high : far_away(s, low);
   for (x.attempt = 0; x.attempt < 3; x.attempt++) {

@@ -32,6 +32,7 @@ bool winding_box(secular *s, double complex low, double complex high, size_t *ze
  *  @param expected  how many there are; other divisions are tried when some were missed
  *  @param mu  [room]; both of a conjugate pair are put there
  *  @param count  set to the number found, at most `room` */
-void outside_find(secular *s, double low, double high, size_t expected, ric_complex *mu, size_t room, size_t *count);
+void multipliers_outside_find(secular *s, double low, double high, size_t expected, ric_complex *mu, size_t room,
+                              size_t *count);
 
 #endif

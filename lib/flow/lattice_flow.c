@@ -321,7 +321,7 @@ static ric_status fit_series(lattice_flow *f, ric_error *error) {
   return beside ? fit(f, 3, &f->aside, error) : RIC_OK;
 }
 
-static ric_status allocate(lattice_flow *f, ric_error *error) {
+static ric_status allocate_lattice(lattice_flow *f, ric_error *error) {
   size_t n = f->base.system->coordinates, obstacles = f->base.system->obstacle_count;
   size_t compliant = system_compliant_obstacles(f->base.system);
   f->q_next = malloc(n * sizeof *f->q_next);
@@ -406,7 +406,7 @@ ric_status lattice_flow_create(const ric_system *system, const ric_flow_options 
   f->made = SIZE_MAX;
   f->contacts_changed = f->aside_stale = true;
   plan(f);
-  status = allocate(f, error);
+  status = allocate_lattice(f, error);
   if (status != RIC_OK)
     destroy(&f->base);
   else

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "hertz_series.h"
+#include "numeric/number_block.h"
 
 /* Tangent vectors side by side. */
 #if defined(__GNUC__)
@@ -235,12 +236,6 @@ bool lattice_variation_renew(lattice_variation *v) {
   return true;
 }
 
-static double *take(double **store, size_t count) {
-  double *taken = *store;
-  *store += count;
-  return taken;
-}
-
 static bool allocate_constants(lattice_variation *v) {
   size_t n = v->n;
   double *store = v->constants = malloc(7 * n * sizeof *store);
@@ -248,9 +243,9 @@ static bool allocate_constants(lattice_variation *v) {
   v->first_pull = calloc(n + 1, sizeof *v->first_pull);
   if (!store || !v->still || !v->first_pull)
     return false;
-  v->inverse_mass = take(&store, n);
-  v->springs = (stencil){take(&store, n), take(&store, n), take(&store, n)};
-  v->dampers = (stencil){take(&store, n), take(&store, n), take(&store, n)};
+  v->inverse_mass = number_store_take(&store, n);
+  v->springs = (stencil){number_store_take(&store, n), number_store_take(&store, n), number_store_take(&store, n)};
+  v->dampers = (stencil){number_store_take(&store, n), number_store_take(&store, n), number_store_take(&store, n)};
   return true;
 }
 
@@ -261,11 +256,11 @@ static bool allocate_lanes(lattice_variation *v) {
   double *store = v->lanes = aligned_alloc(WIDE * sizeof *store, rows * WIDE * sizeof *store);
   if (!store)
     return false;
-  v->levels = take(&store, LEVELS * (n + 2) * WIDE);
-  v->sum_q = take(&store, n * WIDE);
-  v->sum_u = take(&store, n * WIDE);
-  v->stretch = take(&store, levels * count * WIDE);
-  v->force = take(&store, count * 2 * WIDE);
+  v->levels = number_store_take(&store, LEVELS * (n + 2) * WIDE);
+  v->sum_q = number_store_take(&store, n * WIDE);
+  v->sum_u = number_store_take(&store, n * WIDE);
+  v->stretch = number_store_take(&store, levels * count * WIDE);
+  v->force = number_store_take(&store, count * 2 * WIDE);
   return true;
 }
 
@@ -278,8 +273,8 @@ static bool allocate_springs(lattice_variation *v) {
   double *store = v->series = malloc(levels * (v->n + count) * sizeof *store);
   if (!v->varying || !v->pulls || !store)
     return false;
-  v->q = take(&store, levels * v->n);
-  v->k = take(&store, levels * count);
+  v->q = number_store_take(&store, levels * v->n);
+  v->k = number_store_take(&store, levels * count);
   return true;
 }
 

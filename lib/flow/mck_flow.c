@@ -363,7 +363,7 @@ static void mck_flow_destroy(ric_flow *flow) {
   free(f);
 }
 
-static bool allocate(mck_flow *f, const mck_system *s) {
+static bool allocate_mck(mck_flow *f, const mck_system *s) {
   size_t n = s->base.coordinates, levels = (size_t)f->stepper.order + 1;
   size_t compliant = system_compliant_obstacles(&s->base), rigid = s->base.obstacle_count - compliant;
   f->coef = calloc(levels * n, sizeof *f->coef);
@@ -419,7 +419,7 @@ ric_status mck_flow_create(const ric_system *system, const ric_flow_options *opt
     return status;
   }
   plan(f, mck_of(system));
-  if (!allocate(f, mck_of(system))) {
+  if (!allocate_mck(f, mck_of(system))) {
     mck_flow_destroy(&f->base);
     return ric_fail(error, RIC_ENOMEM, "no memory for a flow of %zu coordinates", system->coordinates);
   }

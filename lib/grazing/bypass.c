@@ -1,4 +1,5 @@
 /* The bypass (discontinuity) map: where its gap is smallest, the map itself, and kappa, its second order. */
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -6,6 +7,7 @@
 #include "impact/impact_law.h"
 #include "impact/locate.h"
 #include "local.h"
+#include "numeric/largest.h"
 #include "shooting/arcs.h"
 
 /* Where the gap of the free motion is smallest, and where it opens, forwards and backwards in time.
@@ -20,6 +22,106 @@ typedef struct gap_search {
   gap_reader reader;
 } gap_search;
 
+/* A short way of the free motion in one go.
+ *
+ * A flow with variable order starts with short steps of low order, each as wrong as its tolerance allows: after a way
+ * of 1e-6 the gap of a motion that grazes by 1e-13 is lost in that. Here Gragg's midpoint rule is extrapolated
+ * (Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I, section II.9), which over times that are short
+ * for the motion errs by rounding only; where it does not, it says so. */
+
+typedef struct gragg {
+  const ric_system *system;
+  double *rows;                /* [GRAGG_ROWS][n + m] extrapolations of one row, over those of the row before */
+  double *before, *now, *rate; /* [n + m] ways from the start; rates of change */
+  double *point;               /* [n + m] */
+} gragg;
+
+enum { GRAGG_ROWS = 9 }; /* of 2, 4, 6, ... midpoint steps */
+
+static const double least_state = 1e-3; /* of a state, as flows have it */
+
+static ric_status gragg_init(gragg *l, const ric_system *system, ric_error *error) {
+  size_t size = system->coordinates + system->speeds;
+  *l = (gragg){.system = system, .rows = malloc((GRAGG_ROWS + 4) * size * sizeof *l->rows)};
+  if (!l->rows)
+    return ric_fail(error, RIC_ENOMEM, "no memory for states of %zu numbers", size);
+  l->before = l->rows + GRAGG_ROWS * size;
+  l->now = l->before + size;
+  l->rate = l->now + size;
+  l->point = l->rate + size;
+  return RIC_OK;
+}
+
+static void gragg_clear(gragg *l) {
+  free(l->rows);
+}
+
+static bool gragg_rate(gragg *l, double t) {
+  const ric_system *s = l->system;
+  size_t n = s->coordinates;
+  return s->model->rate(s, NULL, t, l->point, l->point + n, l->rate, l->rate + n) == NULL;
+}
+
+/* The way from x after `steps` steps, in l->now. */
+static bool gragg_midpoint(gragg *l, double t, double dt, const double *x, int steps) {
+  size_t size = l->system->coordinates + l->system->speeds;
+  double h = dt / steps;
+  memset(l->before, 0, size * sizeof *l->before);
+  memset(l->now, 0, size * sizeof *l->now);
+  for (int k = 0; k < steps; k++) {
+    for (size_t i = 0; i < size; i++)
+      l->point[i] = x[i] + l->now[i];
+    if (!gragg_rate(l, t + k * h))
+      return false;
+    for (size_t i = 0; i < size; i++) {
+      double next = l->before[i] + (k == 0 ? h : 2 * h) * l->rate[i];
+      l->before[i] = l->now[i];
+      l->now[i] = next;
+    }
+  }
+  return true;
+}
+
+/* Adds row `row` to the Aitken-Neville scheme, whose last row is kept, highest order first; returns by how much the
+ * highest order changed what the one below it says. */
+static double gragg_extrapolate(gragg *l, int row) {
+  size_t size = l->system->coordinates + l->system->speeds;
+  double change = 0;
+  for (int order = 1; order <= row; order++) {
+    double ratio = (double)(row + 1) / (row + 1 - order), divisor = ratio * ratio - 1;
+    double *coarse = l->rows + (size_t)(order - 1) * size; /* of the row before; this row's takes its place */
+    change = 0;
+    for (size_t i = 0; i < size; i++) {
+      double fine = l->now[i], step = (fine - coarse[i]) / divisor;
+      coarse[i] = fine;
+      l->now[i] = fine + step;
+      change = fmax(change, fabs(step));
+    }
+  }
+  memcpy(l->rows + (size_t)row * size, l->now, size * sizeof *l->now);
+  return row > 0 ? change : INFINITY;
+}
+
+/** Moves a state by dt, when callbacks work and the extrapolation converges to `tolerance` of the size of the state, or
+ *  of 1e-3 when that is larger. @returns whether it has; x is untouched otherwise. */
+static bool gragg_move(gragg *l, double t, double dt, double *x, double tolerance) {
+  size_t size = l->system->coordinates + l->system->speeds;
+  double scale = fmax(largest(x, size), least_state), change, best = INFINITY;
+  for (int row = 0; row < GRAGG_ROWS && !(best <= DBL_EPSILON / 4 * scale); row++) {
+    if (!gragg_midpoint(l, t, dt, x, 2 * (row + 1)))
+      return false;
+    change = gragg_extrapolate(l, row);
+    if (row > 0 && !(change < best)) /* rounding, or no convergence */
+      break;
+    best = change;
+  }
+  if (!(best <= tolerance * scale))
+    return false;
+  for (size_t i = 0; i < size; i++)
+    x[i] += l->now[i];
+  return true;
+}
+
 /* The bypass map of one obstacle. */
 
 struct ric_bypass {
@@ -27,8 +129,8 @@ struct ric_bypass {
   size_t obstacle, size; /* n + m */
   double reach;
   arc_runner runner;
-  bool leaps; /* short ways are not for the flow to move */
-  leap leap;
+  bool short_ways; /* short ways are not for the flow to move */
+  gragg gragg;
   gap_search search;
   impact_solver law;
   double *x, *rates; /* [n + m] a state on the way; rates of change */
@@ -90,7 +192,7 @@ static bool look_at_part(way *w, const ric_segment *piece, const gap_part *rate)
 }
 
 /* Whether it is found on [from, to] of a piece, or there is trouble. */
-static bool look(way *w, const ric_segment *piece, double from, double to, double before, int halvings) {
+static bool search_segment(way *w, const ric_segment *piece, double from, double to, double before, int halvings) {
   gap_part rate;
   w->trouble = gap_read(&w->s->reader, piece, w->s->obstacle, WATCH_RATE, from, to, &rate);
   if (w->trouble)
@@ -98,8 +200,8 @@ static bool look(way *w, const ric_segment *piece, double from, double to, doubl
   if (gap_is_resolved(&rate, before) || halvings == 0)
     return look_at_part(w, piece, &rate);
   double middle = (from + to) / 2;
-  return look(w, piece, from, middle, rate.residual, halvings - 1) ||
-         look(w, piece, middle, to, rate.residual, halvings - 1);
+  return search_segment(w, piece, from, middle, rate.residual, halvings - 1) ||
+         search_segment(w, piece, middle, to, rate.residual, halvings - 1);
 }
 
 static bool look_at_step(way *w) {
@@ -111,13 +213,13 @@ static bool look_at_step(way *w) {
     if (coordinate < piece.first || coordinate - piece.first >= piece.coordinates)
       continue;
     gap_reader_reset(&w->s->reader);
-    if (look(w, &piece, 0, 1, INFINITY, HALVINGS))
+    if (search_segment(w, &piece, 0, 1, INFINITY, HALVINGS))
       return true;
   }
   return false;
 }
 
-static ric_status go(way *w, double t, const double *x, double span, ric_error *error) {
+static ric_status search_way(way *w, double t, const double *x, double span, ric_error *error) {
   ric_flow *flow = w->s->flow;
   double end = t + span;
   RIC_TRY(ric_flow_start(flow, t, x, x + flow->system->coordinates, error));
@@ -143,7 +245,7 @@ static ric_status go(way *w, double t, const double *x, double span, ric_error *
 static ric_status gap_search_minimum(gap_search *s, double t, const double *x, double span, double rate, double *time,
                                      ric_error *error) {
   way w = {.s = s, .slope = copysign(1, span) * rate, .time = NAN};
-  RIC_TRY(go(&w, t, x, span, error));
+  RIC_TRY(search_way(&w, t, x, span, error));
   *time = w.time;
   return RIC_OK;
 }
@@ -152,7 +254,7 @@ static ric_status gap_search_minimum(gap_search *s, double t, const double *x, d
 static ric_status gap_search_opening(gap_search *s, double t, const double *x, double span, double depth, double *time,
                                      ric_error *error) {
   way w = {.s = s, .opening = true, .level = depth, .time = NAN};
-  RIC_TRY(go(&w, t, x, span, error));
+  RIC_TRY(search_way(&w, t, x, span, error));
   *time = w.time;
   return RIC_OK;
 }
@@ -169,7 +271,7 @@ static const double settled_part = 1e-6;
 static const double turn_tol = 1e-6, turn_rounding = 1e-10;
 
 /* A short way is as good as this part of the flow's tolerance, which the flow takes at every step of a way. */
-static const double leap_part = 0.01;
+static const double gragg_part = 0.01;
 
 enum { NEWTON_STEPS = 12 };
 
@@ -177,7 +279,8 @@ ric_bypass_options ric_bypass_options_default(void) {
   return (ric_bypass_options){.flow = ric_flow_options_default(), .reach = 1};
 }
 
-static ric_status check(const ric_system *system, size_t obstacle, const ric_bypass_options *o, ric_error *error) {
+static ric_status check_bypass(const ric_system *system, size_t obstacle, const ric_bypass_options *o,
+                               ric_error *error) {
   RIC_TRY(grazing_check_obstacle(system, obstacle, error));
   if (!(o->reach > 0 && o->reach < INFINITY))
     return ric_fail(error, RIC_EINVAL, "reach = %g, expected a finite number > 0", o->reach);
@@ -192,8 +295,8 @@ static ric_status check(const ric_system *system, size_t obstacle, const ric_byp
 
 static ric_status build(ric_bypass *b, const ric_bypass_options *options, ric_error *error) {
   RIC_TRY(arc_runner_init(&b->runner, b->system, &options->flow, (ric_poll){0}, error));
-  b->leaps = arc_runner_flow(&b->runner)->options.method == RIC_FLOW_CVODES;
-  RIC_TRY(leap_init(&b->leap, b->system, error));
+  b->short_ways = arc_runner_flow(&b->runner)->options.method == RIC_FLOW_CVODES;
+  RIC_TRY(gragg_init(&b->gragg, b->system, error));
   RIC_TRY(gap_search_init(&b->search, arc_runner_flow(&b->runner), b->obstacle, error));
   RIC_TRY(impact_solver_init(&b->law, b->system, error));
   RIC_TRY(impact_solver_reserve(&b->law, 1, error));
@@ -209,7 +312,7 @@ void ric_bypass_destroy(ric_bypass **bypass) {
     return;
   ric_bypass *b = *bypass;
   gap_search_clear(&b->search);
-  leap_clear(&b->leap);
+  gragg_clear(&b->gragg);
   impact_solver_clear(&b->law);
   arc_runner_clear(&b->runner);
   free(b->x);
@@ -221,7 +324,7 @@ ric_status ric_bypass_create(ric_system *system, size_t obstacle, const ric_bypa
                              ric_bypass **bypass, ric_error *error) {
   ric_bypass_options o = options ? *options : ric_bypass_options_default();
   *bypass = NULL;
-  RIC_TRY(check(system, obstacle, &o, error));
+  RIC_TRY(check_bypass(system, obstacle, &o, error));
   ric_bypass *b = calloc(1, sizeof *b);
   if (!b)
     return ric_fail(error, RIC_ENOMEM, "no memory for a bypass map");
@@ -239,8 +342,8 @@ ric_status ric_bypass_create(ric_system *system, size_t obstacle, const ric_bypa
 
 /* Along the free motion. */
 static ric_status move_to(ric_bypass *b, double time, ric_error *error) {
-  double tolerance = leap_part * arc_runner_flow(&b->runner)->options.tolerance, from = b->time;
-  if (b->leaps && leap_move(&b->leap, from, time - from, b->x, tolerance)) {
+  double tolerance = gragg_part * arc_runner_flow(&b->runner)->options.tolerance, from = b->time;
+  if (b->short_ways && gragg_move(&b->gragg, from, time - from, b->x, tolerance)) {
     b->time = time;
     return RIC_OK;
   }

@@ -372,7 +372,8 @@ static void describe_dominant(criterion_work *w, ric_grazing_criterion *c) {
   c->alpha = scalbln(w->alpha, w->map.c_exponent);
 }
 
-static ric_status judge(criterion_work *w, const ric_grazing_map *map, ric_grazing_criterion *c, ric_error *error) {
+static ric_status decide_criterion(criterion_work *w, const ric_grazing_map *map, ric_grazing_criterion *c,
+                                   ric_error *error) {
   const ric_grazing_criterion_options *o = w->options;
   *c = (ric_grazing_criterion){.verdict = RIC_GRAZING_UNDECIDED,
                                .regime = RIC_REGIME_NONE,
@@ -427,7 +428,7 @@ ric_status ric_grazing_criterion_find(const ric_grazing_map *map, const ric_graz
   if (!coefficients && count > 0)
     return ric_fail(error, RIC_EINVAL, "no room for coefficients, expected room for count = %zu", count);
   gsl_error_handler_t *handler = gsl_set_error_handler_off();
-  ric_status status = judge(&work, map, &found, error);
+  ric_status status = decide_criterion(&work, map, &found, error);
   if (status == RIC_OK)
     status = fill_coefficients(&work, coefficients, count, error);
   if (status == RIC_OK && departure)

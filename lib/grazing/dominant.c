@@ -202,7 +202,7 @@ static double dot_moduli(const double *x, const double *y, size_t n) {
 
 /* What eta and xi see: nothing, if less than zero_tol of the terms, or than a hundred times what rounding makes of it.
  */
-static void look_at_components(dominant_multiplier *d, const balanced_map *map, double condition, double zero_tol) {
+static void evaluate_components(dominant_multiplier *d, const balanced_map *map, double condition, double zero_tol) {
   size_t n = map->n;
   double rounding = 100 * d->accuracy;
   double of_seen = zero_tol * dot_moduli(map->eta, d->right, n);
@@ -216,7 +216,7 @@ static void look_at_components(dominant_multiplier *d, const balanced_map *map, 
 }
 
 /* `gap`: the distance to other multipliers, or from L - lambda to a matrix with two of them, if that is less. */
-static void look(dominant_multiplier *d, const balanced_map *map, double gap, double zero_tol) {
+static void evaluate_dominant(dominant_multiplier *d, const balanced_map *map, double gap, double zero_tol) {
   size_t n = map->n;
   double product = dot(d->left, d->right, n);
   for (size_t k = 0; k < n; k++)
@@ -227,7 +227,7 @@ static void look(dominant_multiplier *d, const balanced_map *map, double gap, do
   d->accuracy = change / gap;
   if (!isfinite(d->accuracy))
     d->accuracy = INFINITY;
-  look_at_components(d, map, condition, zero_tol);
+  evaluate_components(d, map, condition, zero_tol);
 }
 
 /* Singular vectors of L - lambda I to the singular value zero are both eigenvectors at once. */
@@ -257,7 +257,7 @@ static ric_status find_vectors(dominant_multiplier *d, const balanced_map *map, 
     d->left[k] = gsl_matrix_get(left, k, n - 1);
   }
   double gap = d->modulus - d->second;
-  look(d, map, n > 1 ? fmin(gap, gsl_vector_get(singular, n - 2)) : gap, zero_tol);
+  evaluate_dominant(d, map, n > 1 ? fmin(gap, gsl_vector_get(singular, n - 2)) : gap, zero_tol);
 out:
   gsl_matrix_free(left);
   gsl_matrix_free(right);

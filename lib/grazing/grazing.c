@@ -316,8 +316,8 @@ static ric_status fill(minimum *k, ric_grazing *g, const ric_grazing_options *o,
   return degenerate_motion(k->f, k->z, g, k->size, o, error);
 }
 
-static ric_status take(ric_family *f, double parameter, const touch *at, const ric_grazing_options *o, ric_grazing *g,
-                       ric_error *error) {
+static ric_status fill_grazing(ric_family *f, double parameter, const touch *at, const ric_grazing_options *o,
+                               ric_grazing *g, ric_error *error) {
   minimum k = {.f = f, .z = g->z, .touch = *at};
   g->parameter = parameter;
   g->second = f->problem.second;
@@ -334,7 +334,8 @@ static ric_status take(ric_family *f, double parameter, const touch *at, const r
   return status;
 }
 
-static ric_status check(const ric_family *f, const ric_grazing *g, const ric_grazing_options *o, ric_error *error) {
+static ric_status check_start(const ric_family *f, const ric_grazing *g, const ric_grazing_options *o,
+                              ric_error *error) {
   if (f->problem.motion.kind == RIC_MOTION_EVEN)
     return ric_fail(error, RIC_EINVAL, "motion.kind = even, expected forced, autonomous or conservative");
   if (g->numbers != f->shooting->arcs.size || g->unknowns != f->unknowns)
@@ -352,7 +353,7 @@ ric_status ric_grazing_take(ric_family *f, const double *z, double parameter, si
                             const ric_grazing_options *options, ric_grazing *g, ric_error *error) {
   const ric_grazing_options o = options ? *options : ric_grazing_options_default();
   const touch at = {.obstacle = obstacle, .time = time};
-  RIC_TRY(check(f, g, &o, error));
+  RIC_TRY(check_start(f, g, &o, error));
   if (obstacle >= f->problem.system->obstacle_count)
     return ric_fail(error, RIC_EINVAL, "obstacle = %zu, expected less than %zu", obstacle,
                     f->problem.system->obstacle_count);
@@ -361,7 +362,7 @@ ric_status ric_grazing_take(ric_family *f, const double *z, double parameter, si
   if (z != g->z)
     memcpy(g->z, z, g->unknowns * sizeof *z);
   family_forget(f);
-  return take(f, parameter, &at, &o, g, error);
+  return fill_grazing(f, parameter, &at, &o, g, error);
 }
 
 /* --- along a family ----------------------------------------------------------------------------------------------- */
@@ -390,10 +391,10 @@ ric_status ric_grazing_find(ric_family *f, double *z, double parameter, const ri
   const ric_grazing_options o = options ? *options : ric_grazing_options_default();
   walk w = {.g = g, .reached = parameter};
   ric_curve_run run;
-  RIC_TRY(check(f, g, &o, error));
+  RIC_TRY(check_start(f, g, &o, error));
   RIC_TRY(ric_family_follow(f, z, parameter, NULL, see_point, &w, &run, error));
   if (w.found)
-    return take(f, w.parameter, &w.at, &o, g, error);
+    return fill_grazing(f, w.parameter, &w.at, &o, g, error);
   return ric_fail(error, RIC_ENUMERIC, "no obstacle is touched from %.9g to %.9g, where the family ends: %s%s%.100s",
                   parameter, w.reached, ric_curve_end_name(run.end), run.reason[0] ? ": " : "", run.reason);
 }

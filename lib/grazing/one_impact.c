@@ -16,7 +16,7 @@
 /* Iterates of the closed forms: their rounding errors add up, and d falls by lambda^2 with each of them. */
 enum { MOST_PERIOD = 10000 };
 
-static ric_status allocate(one_impact *o, ric_error *error) {
+static ric_status allocate_one_impact(one_impact *o, ric_error *error) {
   size_t m = o->map->size, n = o->period;
   o->first = calloc(n, sizeof *o->first);
   o->second = calloc(n, sizeof *o->second);
@@ -98,7 +98,7 @@ ric_status one_impact_init(one_impact *o, const ric_grazing_map *map, size_t per
   if (period < 1 || period > MOST_PERIOD)
     return ric_fail(error, RIC_EINVAL, "period = %zu, expected 1 to %d", period, MOST_PERIOD);
   RIC_TRY(ric_grazing_map_check(map, error));
-  RIC_TRY(allocate(o, error));
+  RIC_TRY(allocate_one_impact(o, error));
   size_t bytes = map->size * sizeof *map->xi;
   raise_power(o);
   memcpy(o->vector->data, map->eta, bytes);

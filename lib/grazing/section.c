@@ -118,7 +118,7 @@ static ric_status begin(second *w, ric_error *error) {
 
 /* How far the state w->x at a time is from the motion on the section a period later, and the time in which the flow
  * would bring it onto the section, to first order. */
-static ric_status look(second *w, double t, double *ahead, ric_error *error) {
+static ric_status measure_return(second *w, double t, double *ahead, ric_error *error) {
   const section *k = w->k;
   const size_t n = k->f->problem.system->coordinates;
   double distance = 0, speed = 0;
@@ -146,7 +146,7 @@ static ric_status flow_to(second *w, double t, double end, ric_error *error) {
 static ric_status cross(second *w, double t, ric_error *error) {
   double ahead, before = INFINITY;
   for (int i = 0; i < MOST_CROSSINGS; i++) {
-    RIC_TRY(look(w, t, &ahead, error));
+    RIC_TRY(measure_return(w, t, &ahead, error));
     const double size = fabs(ahead);
     if (t + ahead == t || (size <= crossing_tol * w->k->g->period && size > before / 2))
       return RIC_OK;
@@ -324,7 +324,7 @@ size_t ric_grazing_coordinates(const ric_grazing *g, const ric_shooting *s) {
   return s->arcs.kind == RIC_MOTION_FORCED ? g->numbers : g->numbers - 1;
 }
 
-static ric_status allocate(section *k, ric_error *error) {
+static ric_status allocate_section(section *k, ric_error *error) {
   const size_t n = k->numbers, s = k->state;
   size_t used = 0;
   double *block = k->block = calloc(n * n + n + (4 + k->size) * s, sizeof *block);
@@ -469,7 +469,7 @@ static bool is_at_impact(const section *k, double time) {
   return false;
 }
 
-static ric_status check(const section *k, const ric_grazing_map *map, ric_error *error) {
+static ric_status check_map(const section *k, const ric_grazing_map *map, ric_error *error) {
   if (k->f->problem.motion.kind == RIC_MOTION_EVEN)
     return ric_fail(error, RIC_EINVAL, "motion.kind = even, expected forced, autonomous or conservative");
   if (map->size != k->size)
@@ -489,10 +489,10 @@ ric_status section_open(section *k, ric_family *f, const ric_grazing *g, const r
   k->state = g->numbers + (k->forced ? 1 : 0);
   k->size = k->state - 1;
   k->touch = g->time >= k->time ? g->time : g->time + g->period; /* on the way from the section */
-  RIC_TRY(check(k, map, error));
+  RIC_TRY(check_map(k, map, error));
   family_forget(f);
   RIC_TRY(family_set(f, g->parameter, g->second, error));
-  RIC_TRY(allocate(k, error));
+  RIC_TRY(allocate_section(k, error));
   RIC_TRY(read_rates(k, error));
   RIC_TRY(set_normal(k, plane ? plane->normal : NULL, error));
   set_basis(k);

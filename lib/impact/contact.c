@@ -2,9 +2,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "growing.h"
 #include "numeric/largest.h"
-#include "trajectory_state.h"
+#include "numeric/list.h"
+#include "trajectory.h"
 
 /* The life of a contact: the one place that changes its state.
  *
@@ -14,7 +14,7 @@
  * depart, and that come to rest, so that no step looks at all contacts. */
 
 ric_status index_list_add(index_list *list, size_t item, ric_error *error) {
-  size_t *items = growing_room(list->items, list->count, &list->capacity, sizeof *items);
+  size_t *items = list_room(list->items, list->count, &list->capacity, sizeof *items);
   if (!items)
     return ric_fail(error, RIC_ENOMEM, "no memory for a list of more than %zu contacts", list->count);
   list->items = items;
@@ -79,7 +79,7 @@ ric_status contact_rests(ric_trajectory *tr, size_t obstacle, ric_error *error) 
 }
 
 ric_status contact_will_rest(ric_trajectory *tr, size_t obstacle, double time, ric_error *error) {
-  coming_rest *coming = growing_room(tr->coming, tr->coming_count, &tr->coming_capacity, sizeof *coming);
+  coming_rest *coming = list_room(tr->coming, tr->coming_count, &tr->coming_capacity, sizeof *coming);
   if (!coming)
     return ric_fail(error, RIC_ENOMEM, "no memory for more than %zu contacts that come to rest", tr->coming_count);
   tr->coming = coming;

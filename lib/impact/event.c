@@ -5,9 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "growing.h"
+#include "numeric/list.h"
 #include "ricochet/event.h"
-#include "trajectory_state.h"
+#include "trajectory.h"
 
 const char *ric_event_name(ric_event_kind kind) {
   static const char *const names[] = {
@@ -20,26 +20,26 @@ const char *ric_event_name(ric_event_kind kind) {
 
 /* Tangent vectors of a trajectory where contacts meet. */
 
-void carried_clear(carried *c) {
+void impact_tangents_clear(impact_tangents *c) {
   tangent_jump_clear(&c->jump);
   free(c->before);
   free(c->contact);
   free(c->group.items);
   free(c->restitution);
-  *c = (carried){0};
+  *c = (impact_tangents){0};
 }
 
 static ric_status make_room(ric_trajectory *tr, size_t columns, ric_error *error) {
-  carried *c = &tr->carried;
+  impact_tangents *c = &tr->tangents;
   size_t size = tr->system->coordinates + tr->system->speeds, count = tr->system->obstacle_count;
   if (c->jump.columns >= columns)
     return RIC_OK;
-  carried_clear(c);
+  impact_tangents_clear(c);
   RIC_TRY(tangent_jump_init(&c->jump, tr->system, &tr->law, columns, error));
   c->before = malloc(size * (columns + 2) * sizeof *c->before);
   c->contact = malloc(3 * count + 1);
   if (!c->before || !c->contact) {
-    carried_clear(c);
+    impact_tangents_clear(c);
     return ric_fail(error, RIC_ENOMEM, "no memory for %zu tangent vectors of %zu numbers", columns, size);
   }
   c->state = c->before + size;
@@ -53,21 +53,21 @@ static bool carries(const ric_trajectory *tr) {
   return tr->flow->tangent.columns > 0;
 }
 
-void carried_lose(ric_trajectory *tr, size_t obstacle, double time, ric_saltation_kind kind) {
-  if (!carries(tr) || tr->carried.kind != RIC_SALTATION_DIFFERENTIABLE)
+void impact_tangents_lose(ric_trajectory *tr, size_t obstacle, double time, ric_saltation_kind kind) {
+  if (!carries(tr) || tr->tangents.kind != RIC_SALTATION_DIFFERENTIABLE)
     return;
-  tr->carried.kind = kind;
-  tr->carried.obstacle = obstacle;
-  tr->carried.time = time;
+  tr->tangents.kind = kind;
+  tr->tangents.obstacle = obstacle;
+  tr->tangents.time = time;
 }
 
-void carried_hold(ric_trajectory *tr, size_t obstacle) {
+void impact_tangents_hold(ric_trajectory *tr, size_t obstacle) {
   const ric_obstacle *o = tr->system->obstacles;
   const tangents *d = &tr->flow->tangent;
   if (!carries(tr))
     return;
   if (!o) { /* no way to tell the directions that it leaves from the one that it takes */
-    carried_lose(tr, obstacle, tr->flow->time, RIC_SALTATION_NOT_DIFFERENTIABLE);
+    impact_tangents_lose(tr, obstacle, tr->flow->time, RIC_SALTATION_NOT_DIFFERENTIABLE);
     return;
   }
   memset(d->q + o[obstacle].coordinate * d->columns, 0, d->columns * sizeof *d->q);
@@ -79,12 +79,12 @@ ric_status ric_trajectory_carry(ric_trajectory *tr, size_t columns, const double
   if (!tr->started)
     return ric_fail(error, RIC_EINVAL, "the trajectory has no start");
   RIC_TRY(ric_flow_carry(tr->flow, columns, dq, du, error));
-  tr->carried.kind = RIC_SALTATION_DIFFERENTIABLE;
+  tr->tangents.kind = RIC_SALTATION_DIFFERENTIABLE;
   ric_status status = columns > 0 ? make_room(tr, columns, error) : RIC_OK;
   if (status != RIC_OK)
     (void)ric_flow_carry(tr->flow, 0, NULL, NULL, NULL);
   for (size_t i = 0; status == RIC_OK && tr->system->obstacles && i < tr->held.count; i++)
-    carried_hold(tr, tr->held.items[i]);
+    impact_tangents_hold(tr, tr->held.items[i]);
   return status;
 }
 
@@ -100,20 +100,20 @@ const double *ric_trajectory_du(const ric_trajectory *trajectory) {
   return ric_flow_du(trajectory->flow);
 }
 
-void carried_mark(ric_trajectory *tr) {
+void impact_tangents_mark(ric_trajectory *tr) {
   const ric_flow *f = tr->flow;
   size_t n = tr->system->coordinates, m = tr->system->speeds;
   if (!carries(tr))
     return;
-  memcpy(tr->carried.before, f->q, n * sizeof *f->q);
+  memcpy(tr->tangents.before, f->q, n * sizeof *f->q);
   if (m > 0)
-    memcpy(tr->carried.before + n, f->u, m * sizeof *f->u);
-  memcpy(tr->carried.contact_before, f->contact, tr->system->obstacle_count);
+    memcpy(tr->tangents.before + n, f->u, m * sizeof *f->u);
+  memcpy(tr->tangents.contact_before, f->contact, tr->system->obstacle_count);
 }
 
 /* The contacts of tr->impacts that push together: one that is hit, and the persistent ones that it has reached. */
 static ric_status gather_group(ric_trajectory *tr, size_t which, size_t hits, jump_group *group, ric_error *error) {
-  carried *c = &tr->carried;
+  impact_tangents *c = &tr->tangents;
   c->group.count = 0;
   if (c->restitution_capacity < tr->impact_count) {
     free(c->restitution);
@@ -139,7 +139,7 @@ static ric_status gather_group(ric_trajectory *tr, size_t which, size_t hits, ju
 /* Takes tangent vectors through one impact; the contacts that follow upon it are those of the flow, but for impacts
  * that are still to come. */
 static ric_status pass(ric_trajectory *tr, size_t which, size_t hits, bool last, const tangents *d, ric_error *error) {
-  carried *c = &tr->carried;
+  impact_tangents *c = &tr->tangents;
   size_t n = tr->system->coordinates, obstacle = tr->impacts[which].obstacle;
   jump_group group;
   ric_saltation_kind kind;
@@ -149,13 +149,13 @@ static ric_status pass(ric_trajectory *tr, size_t which, size_t hits, bool last,
   RIC_TRY(tangent_jump_apply(&c->jump, tr->flow->time, &group, tr->options.grazing_tol, c->contact, c->contact_after,
                              c->state, c->state + n, d, &kind, error));
   if (kind != RIC_SALTATION_DIFFERENTIABLE)
-    carried_lose(tr, obstacle, tr->flow->time, kind);
+    impact_tangents_lose(tr, obstacle, tr->flow->time, kind);
   return RIC_OK;
 }
 
 /* All impacts, one after the other, forwards or backwards. */
 static ric_status pass_all(ric_trajectory *tr, size_t hits, bool backwards, const tangents *d, ric_error *error) {
-  carried *c = &tr->carried;
+  impact_tangents *c = &tr->tangents;
   size_t size = tr->system->coordinates + tr->system->speeds;
   memcpy(c->state, c->before, size * sizeof *c->state);
   memcpy(c->contact, c->contact_before, tr->system->obstacle_count);
@@ -171,14 +171,14 @@ static bool any_coupled(const ric_trajectory *tr, size_t hits) {
   return coupled;
 }
 
-ric_status carried_meet(ric_trajectory *tr, size_t hits, ric_error *error) {
-  carried *c = &tr->carried;
+ric_status impact_tangents_jump(ric_trajectory *tr, size_t hits, ric_error *error) {
+  impact_tangents *c = &tr->tangents;
   tangents *d = &tr->flow->tangent, other = {.columns = d->columns, .q = c->other};
   size_t n = tr->system->coordinates, size = (n + tr->system->speeds) * d->columns;
   if (!carries(tr) || hits == 0 || c->kind != RIC_SALTATION_DIFFERENTIABLE)
     return RIC_OK;
   if (any_coupled(tr, hits)) {
-    carried_lose(tr, tr->impacts[0].obstacle, tr->flow->time, RIC_SALTATION_NOT_DIFFERENTIABLE);
+    impact_tangents_lose(tr, tr->impacts[0].obstacle, tr->flow->time, RIC_SALTATION_NOT_DIFFERENTIABLE);
     return RIC_OK;
   }
   other.u = other.q + n * d->columns;
@@ -188,25 +188,25 @@ ric_status carried_meet(ric_trajectory *tr, size_t hits, ric_error *error) {
   }
   RIC_TRY(pass_all(tr, hits, false, d, error));
   if (hits > 1 && !tangent_jumps_agree(d->q, other.q, size))
-    carried_lose(tr, tr->impacts[0].obstacle, tr->flow->time, RIC_SALTATION_NOT_DIFFERENTIABLE);
+    impact_tangents_lose(tr, tr->impacts[0].obstacle, tr->flow->time, RIC_SALTATION_NOT_DIFFERENTIABLE);
   /* Contacts that the impacts have closed leave no more of their directions than rounding, which is not to be kept. */
   for (size_t i = 0; tr->system->obstacles && i < tr->held.count; i++)
-    carried_hold(tr, tr->held.items[i]);
+    impact_tangents_hold(tr, tr->held.items[i]);
   return RIC_OK;
 }
 
-ric_status carried_end(ric_trajectory *tr, char *reason, size_t room, ric_error *error) {
-  bool grazes = tr->carried.kind == RIC_SALTATION_GRAZING;
-  snprintf(reason, room, "at t = %g tangent vectors have no way through %s obstacle %zu", tr->carried.time,
-           grazes ? "the grazing contact of" : "impacts at one time, one of them on", tr->carried.obstacle);
-  tr->carried.kind = RIC_SALTATION_DIFFERENTIABLE;
+ric_status impact_tangents_end(ric_trajectory *tr, char *reason, size_t room, ric_error *error) {
+  bool grazes = tr->tangents.kind == RIC_SALTATION_GRAZING;
+  snprintf(reason, room, "at t = %g tangent vectors have no way through %s obstacle %zu", tr->tangents.time,
+           grazes ? "the grazing contact of" : "impacts at one time, one of them on", tr->tangents.obstacle);
+  tr->tangents.kind = RIC_SALTATION_DIFFERENTIABLE;
   return ric_flow_carry(tr->flow, 0, NULL, NULL, error);
 }
 
 /* What happens when contacts meet: at the start of a run, and at the first roots of a step. */
 
 static ric_status add_impact(ric_trajectory *tr, size_t obstacle, double restitution, ric_error *error) {
-  impact *impacts = growing_room(tr->impacts, tr->impact_count, &tr->impact_capacity, sizeof *impacts);
+  impact *impacts = list_room(tr->impacts, tr->impact_count, &tr->impact_capacity, sizeof *impacts);
   if (!impacts)
     return ric_fail(error, RIC_ENOMEM, "no memory for more than %zu impacts at one time", tr->impact_count);
   tr->impacts = impacts;
@@ -396,10 +396,10 @@ static ric_status sort_root(ric_trajectory *tr, size_t obstacle, ric_error *erro
     RIC_TRY(is_pressed_on(tr, obstacle, rate, &pressed, error));
     if (!pressed)
       return add_impact(tr, obstacle, restitution_of(tr, obstacle), error);
-    carried_lose(tr, obstacle, tr->flow->time, RIC_SALTATION_GRAZING);
+    impact_tangents_lose(tr, obstacle, tr->flow->time, RIC_SALTATION_GRAZING);
     return index_list_add(&tr->settling, obstacle, error);
   }
-  carried_lose(tr, obstacle, tr->flow->time, RIC_SALTATION_GRAZING);
+  impact_tangents_lose(tr, obstacle, tr->flow->time, RIC_SALTATION_GRAZING);
   ric_event event = event_of(tr, RIC_EVENT_GRAZING, obstacle);
   event.gap_rate = event.gap_rate_end = rate;
   event.depth = gap_now(tr, obstacle);
@@ -461,12 +461,12 @@ static ric_status resolve(ric_trajectory *tr, ric_error *error) {
     RIC_TRY(collide(tr, hits, error));
   contacts_forget_released(tr);
   RIC_TRY(contacts_settle(tr, error));
-  RIC_TRY(carried_meet(tr, hits, error));
+  RIC_TRY(impact_tangents_jump(tr, hits, error));
   return flow_restart(tr->flow, error);
 }
 
-ric_status contacts_meet(ric_trajectory *tr, ric_error *error) {
-  carried_mark(tr);
+ric_status contacts_onset(ric_trajectory *tr, ric_error *error) {
+  impact_tangents_mark(tr);
   contacts_measure(tr);
   tr->impact_count = tr->settling.count = 0;
   for (size_t i = 0; i < tr->locator.roots.count; i++) {
@@ -497,7 +497,7 @@ static ric_status begin_one(ric_trajectory *tr, size_t obstacle, ric_error *erro
 }
 
 ric_status contacts_begin(ric_trajectory *tr, ric_error *error) {
-  carried_mark(tr);
+  impact_tangents_mark(tr);
   contacts_measure(tr);
   tr->impact_count = tr->settling.count = 0;
   for (size_t j = 0; j < tr->system->obstacle_count; j++)
@@ -505,9 +505,9 @@ ric_status contacts_begin(ric_trajectory *tr, ric_error *error) {
       RIC_TRY(begin_one(tr, j, error));
   RIC_TRY(resolve(tr, error));
   for (size_t i = 0; i < tr->held.count; i++)
-    carried_hold(tr, tr->held.items[i]);
+    impact_tangents_hold(tr, tr->held.items[i]);
   for (size_t i = 0; i < tr->departing.count; i++)
     if (tr->locator.departure[tr->departing.items[i]] == DEPARTS_SLOWLY)
-      carried_lose(tr, tr->departing.items[i], tr->flow->time, RIC_SALTATION_GRAZING);
+      impact_tangents_lose(tr, tr->departing.items[i], tr->flow->time, RIC_SALTATION_GRAZING);
   return RIC_OK;
 }

@@ -3,8 +3,8 @@
 
 #include <stdlib.h>
 
-#include "growing.h"
 #include "numeric/chebyshev.h"
+#include "numeric/list.h"
 #include "numeric/poly_look.h"
 
 enum { GAP_DEGREE = 12, GAP_NODES = GAP_DEGREE + 1, GAP_PROBES = 2 };
@@ -158,7 +158,7 @@ ric_status locator_init(locator *l, ric_flow *flow, double grazing_tol, ric_erro
 }
 
 static ric_status add_root(contact_root_list *list, contact_root h, ric_error *error) {
-  contact_root *hits = growing_room(list->hits, list->count, &list->capacity, sizeof *hits);
+  contact_root *hits = list_room(list->hits, list->count, &list->capacity, sizeof *hits);
   if (!hits)
     return ric_fail(error, RIC_ENOMEM, "no memory for more than %zu events at one time", list->count);
   list->hits = hits;
@@ -260,7 +260,8 @@ static ric_status look_at_root(scan *s, size_t obstacle, const gap_part *part, d
   return *found ? found_root(s, obstacle, part->from + y * (part->to - part->from)) : RIC_OK;
 }
 
-static ric_status look(scan *s, size_t obstacle, contact_function what, const gap_part *part, bool *found) {
+static ric_status find_contact_root(scan *s, size_t obstacle, contact_function what, const gap_part *part,
+                                    bool *found) {
   departure from = part->from == 0 ? (departure)s->l->departure[obstacle] : DEPARTED;
   if (what == WATCH_GAP && !system_complies(s->flow->system, obstacle))
     return look_at_gap(s, obstacle, part, from, found);
@@ -277,7 +278,7 @@ static ric_status scan_part(scan *s, const ric_segment *piece, size_t obstacle, 
   if (!shorten(s, &part))
     return RIC_OK;
   if (gap_is_resolved(&part, before))
-    return look(s, obstacle, what, &part, found);
+    return find_contact_root(s, obstacle, what, &part, found);
   if (halvings == 0)
     return ric_fail(s->error, RIC_ELIMIT, "at t = %.10g, obstacle %zu: its %s varies too fast to be followed",
                     piece->start + from * piece->length, obstacle, what == WATCH_FORCE ? "force" : "gap");

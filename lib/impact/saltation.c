@@ -320,7 +320,7 @@ static ric_status run(sequence *s, bool backwards, double *S, ric_error *error) 
   return RIC_OK;
 }
 
-static ric_status check(const sequence *s, ric_error *error) {
+static ric_status check_sequence(const sequence *s, ric_error *error) {
   if (s->count == 0)
     return ric_fail(error, RIC_EINVAL, "no obstacle is hit, expected one or more");
   if (!(s->grazing_tol > 0))
@@ -357,7 +357,7 @@ ric_status ric_saltation_find(const ric_system *system, double t, const double *
   size_t size = system->coordinates + system->speeds, square = size * size;
   sequence s = {
       .system = system, .t = t, .grazing_tol = grazing_tol, .q = q, .u = u, .obstacles = obstacles, .count = count};
-  RIC_TRY(check(&s, error));
+  RIC_TRY(check_sequence(&s, error));
   double *found = malloc(2 * (square + size) * sizeof *found);
   ric_status status = found ? begin(&s, error) : ric_fail(error, RIC_ENOMEM, "no memory for %zu states", size);
   if (status == RIC_OK)

@@ -1,5 +1,5 @@
 /* Event-driven motions: the main loop, its options and outcomes, and samples. */
-#include "trajectory_state.h"
+#include "trajectory.h"
 
 #include <stdint.h>
 #include <stdio.h>
@@ -126,7 +126,7 @@ void ric_trajectory_destroy(ric_trajectory **trajectory) {
   free(tr->accelerations);
   free(tr->forces);
   free(tr->coming);
-  carried_clear(&tr->carried);
+  impact_tangents_clear(&tr->tangents);
   free(tr);
   *trajectory = NULL;
 }
@@ -166,7 +166,7 @@ static ric_status check_start(const ric_trajectory *tr, double t, const double *
 ric_status ric_trajectory_start(ric_trajectory *tr, double t, const double *q, const double *u, ric_error *error) {
   tr->started = false;
   contacts_reset(tr);
-  tr->carried.kind = RIC_SALTATION_DIFFERENTIABLE;
+  tr->tangents.kind = RIC_SALTATION_DIFFERENTIABLE;
   RIC_TRY(ric_flow_start(tr->flow, t, q, u, error));
   RIC_TRY(check_start(tr, t, q, error));
   tr->started = tr->fresh = true;
@@ -222,7 +222,7 @@ static void show_grazes(ric_trajectory *tr, double start, double length) {
     event.time = start + h->x * length;
     event.depth = h->depth;
     trajectory_show(tr, &event);
-    carried_lose(tr, h->obstacle, event.time, RIC_SALTATION_GRAZING);
+    impact_tangents_lose(tr, h->obstacle, event.time, RIC_SALTATION_GRAZING);
   }
 }
 
@@ -262,7 +262,7 @@ static ric_status advance(ric_trajectory *tr, double end, ric_error *error) {
   RIC_TRY(contacts_depart(tr, error));
   RIC_TRY(contacts_keep_on(tr, &moved, error));
   if (meets) {
-    RIC_TRY(contacts_meet(tr, error));
+    RIC_TRY(contacts_onset(tr, error));
     count_event_time(tr);
   } else if (moved)
     RIC_TRY(flow_restart(f, error));
@@ -276,13 +276,13 @@ static void conclude(ric_trajectory *tr, ric_run_outcome outcome, const char *re
 }
 
 /* Whether tangent vectors are lost, which ends the run. */
-static ric_status look_at_carried(ric_trajectory *tr, bool *lost, ric_error *error) {
-  ric_saltation_kind kind = tr->carried.kind;
+static ric_status check_tangents(ric_trajectory *tr, bool *lost, ric_error *error) {
+  ric_saltation_kind kind = tr->tangents.kind;
   *lost = kind != RIC_SALTATION_DIFFERENTIABLE;
   if (!*lost)
     return RIC_OK;
   conclude(tr, kind == RIC_SALTATION_GRAZING ? RIC_RUN_GRAZING : RIC_RUN_NOT_DIFFERENTIABLE, "");
-  return carried_end(tr, tr->run->reason, sizeof tr->run->reason, error);
+  return impact_tangents_end(tr, tr->run->reason, sizeof tr->run->reason, error);
 }
 
 /* Whether the run is over, and how. */
@@ -309,12 +309,12 @@ static ric_status move(ric_trajectory *tr, double end, ric_error *error) {
     tr->fresh = false;
     RIC_TRY(contacts_begin(tr, error));
   }
-  RIC_TRY(look_at_carried(tr, &lost, error));
+  RIC_TRY(check_tangents(tr, &lost, error));
   while (!lost && !is_over(tr, end)) {
     if (ric_poll_stops(tr->options.poll))
       return ric_fail(error, RIC_ESTOPPED, "stopped at t = %g", tr->flow->time);
     RIC_TRY(advance(tr, end, error));
-    RIC_TRY(look_at_carried(tr, &lost, error));
+    RIC_TRY(check_tangents(tr, &lost, error));
   }
   return RIC_OK;
 }

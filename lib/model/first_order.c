@@ -387,7 +387,7 @@ static const system_model model_table = {.rate = rate,
                                          .restitution = restitution,
                                          .destroy = destroy};
 
-static ric_status check(const ric_first_order *model, ric_error *error) {
+static ric_status check_model(const ric_first_order *model, ric_error *error) {
   if (!(model->states >= 1 && model->states <= UINT32_MAX / 16))
     return ric_fail(error, RIC_EINVAL, "states = %zu, expected 1 to %u", model->states, UINT32_MAX / 16);
   if (!model->rate)
@@ -418,7 +418,7 @@ static size_t lay_out(first_order *s, double *block) {
   return used;
 }
 
-static bool allocate(first_order *s) {
+static bool allocate_first_order(first_order *s) {
   size_t count = s->model.obstacles;
   s->held_most = count < s->model.states ? count : s->model.states;
   s->numbers = calloc(lay_out(s, NULL), sizeof *s->numbers);
@@ -432,7 +432,7 @@ static bool allocate(first_order *s) {
 
 ric_status ric_system_create_first_order(const ric_first_order *model, ric_system **system, ric_error *error) {
   *system = NULL;
-  RIC_TRY(check(model, error));
+  RIC_TRY(check_model(model, error));
   first_order *s = calloc(1, sizeof *s);
   if (!s)
     return ric_fail(error, RIC_ENOMEM, "no memory for a system");
@@ -442,7 +442,7 @@ ric_status ric_system_create_first_order(const ric_first_order *model, ric_syste
                          .uncoupled = model->obstacles <= 1};
   s->model = *model;
   s->gap = (user_gap){model->states, model->gap, model->gap_gradient, model->user, NULL};
-  if (!allocate(s)) {
+  if (!allocate_first_order(s)) {
     destroy(&s->base);
     return ric_fail(error, RIC_ENOMEM, "no memory for a system of %zu states", model->states);
   }

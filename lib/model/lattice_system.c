@@ -378,7 +378,7 @@ static const ric_spring *copy_springs(const ric_spring *given, size_t count, ric
 }
 
 /* Takes a lattice that has been checked; nothing has changed when there is no memory. */
-static ric_status take(lattice_system *s, const ric_lattice *l, ric_error *error) {
+static ric_status take_lattice(lattice_system *s, const ric_lattice *l, ric_error *error) {
   size_t n = l->particles;
   bool room = reserve_doubles(l->masses, n, &s->masses) && reserve_doubles(l->force_cos, n, &s->force_cos) &&
               reserve_doubles(l->force_sin, n, &s->force_sin) && reserve_springs(l->on_sites, n, &s->on_sites) &&
@@ -404,7 +404,7 @@ ric_status ric_system_create_lattice(const ric_lattice *lattice, const ric_obsta
     return ric_fail(error, RIC_ENOMEM, "no memory for a lattice of %zu particles", n);
   s->base = (ric_system){.model = &model, .taylor = SYSTEM_LATTICE, .coordinates = n, .speeds = n, .uncoupled = true};
   ric_system *made = &s->base;
-  ric_status status = take(s, lattice, error);
+  ric_status status = take_lattice(s, lattice, error);
   if (status == RIC_OK)
     status = system_take_obstacles(made, obstacles, count, error);
   if (status != RIC_OK)
@@ -425,7 +425,7 @@ ric_status ric_system_set_lattice(ric_system *system, const ric_lattice *lattice
   if (lattice->ends != s->lattice.ends)
     return ric_fail(error, RIC_EINVAL, "ends = %s, expected %s as the system was made", ends[lattice->ends],
                     ends[s->lattice.ends]);
-  RIC_TRY(take(s, lattice, error));
+  RIC_TRY(take_lattice(s, lattice, error));
   system->revision++;
   return RIC_OK;
 }

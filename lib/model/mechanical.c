@@ -258,7 +258,7 @@ static const system_model table = {.rate = rate,
                                    .restitution = restitution,
                                    .destroy = destroy};
 
-static ric_status check(const ric_mechanical *model, ric_error *error) {
+static ric_status check_model(const ric_mechanical *model, ric_error *error) {
   if (!(model->coordinates >= 1 && model->coordinates <= UINT32_MAX / 16))
     return ric_fail(error, RIC_EINVAL, "coordinates = %zu, expected 1 to %u", model->coordinates, UINT32_MAX / 16);
   if (!(model->speeds >= 1 && model->speeds <= model->coordinates))
@@ -296,7 +296,7 @@ static size_t lay_out(mechanical *s, double *block) {
   return used;
 }
 
-static bool allocate(mechanical *s) {
+static bool allocate_mechanical(mechanical *s) {
   size_t count = s->model.obstacles;
   s->held_most = count < s->model.speeds ? count : s->model.speeds;
   s->numbers = calloc(lay_out(s, NULL), sizeof *s->numbers);
@@ -310,7 +310,7 @@ static bool allocate(mechanical *s) {
 
 ric_status ric_system_create_mechanical(const ric_mechanical *model, ric_system **system, ric_error *error) {
   *system = NULL;
-  RIC_TRY(check(model, error));
+  RIC_TRY(check_model(model, error));
   mechanical *s = calloc(1, sizeof *s);
   if (!s)
     return ric_fail(error, RIC_ENOMEM, "no memory for a system");
@@ -321,7 +321,7 @@ ric_status ric_system_create_mechanical(const ric_mechanical *model, ric_system 
                          .uncoupled = model->obstacles <= 1};
   s->model = *model;
   s->gap = (user_gap){model->coordinates, model->gap, model->gap_gradient, model->user, NULL};
-  if (!allocate(s)) {
+  if (!allocate_mechanical(s)) {
     destroy(&s->base);
     return ric_fail(error, RIC_ENOMEM, "no memory for a mechanical system of %zu coordinates", model->coordinates);
   }

@@ -1,5 +1,5 @@
 /* The linear part of a system as matrices, and its normal modes. */
-#include "linear_part.h"
+#include "normal_modes.h"
 
 #include <float.h>
 #include <math.h>

@@ -5,7 +5,7 @@
 #include "ricochet/obstacle.h"
 #include "system_model.h"
 
-static ric_status check(const ric_obstacle *o, size_t j, size_t coordinates, ric_error *error) {
+static ric_status check_obstacle(const ric_obstacle *o, size_t j, size_t coordinates, ric_error *error) {
   if (o->coordinate >= coordinates)
     return ric_fail(error, RIC_EINVAL, "obstacle %zu: coordinate = %zu, expected less than %zu", j, o->coordinate,
                     coordinates);
@@ -22,7 +22,7 @@ static ric_status check(const ric_obstacle *o, size_t j, size_t coordinates, ric
 
 ric_status ric_obstacles_check(const ric_obstacle *obstacles, size_t count, size_t coordinates, ric_error *error) {
   for (size_t j = 0; j < count; j++)
-    RIC_TRY(check(&obstacles[j], j, coordinates, error));
+    RIC_TRY(check_obstacle(&obstacles[j], j, coordinates, error));
   return RIC_OK;
 }
 

@@ -9,8 +9,8 @@
 #include <sunlinsol/sunlinsol_dense.h>
 #include <sunmatrix/sunmatrix_dense.h>
 
-#include "sundials_context.h"
 #include "largest.h"
+#include "sundials_context.h"
 
 enum { MOST_STEPS = 200 };
 

@@ -11,4 +11,11 @@ static inline double *number_block_take(double *block, size_t *used, size_t coun
   return part;
 }
 
+/** The next `count` numbers of a store, which moves on behind them. */
+static inline double *number_store_take(double **store, size_t count) {
+  double *part = *store;
+  *store += count;
+  return part;
+}
+
 #endif

@@ -7,10 +7,11 @@
 #include <string.h>
 
 #include "impact_response.h"
-#include "model/linear_part.h"
-#include "verdict.h"
-#include "ricochet/normal_modes.h"
+#include "model/normal_modes.h"
 #include "numeric/constants.h"
+#include "numeric/number_block.h"
+#include "ricochet/normal_modes.h"
+#include "verdict.h"
 
 /* Squares of frequencies nearer than this to each other, relative to the largest, are those of one space of modes: ten
  * times and more what rounding makes of equal ones, also with a mass matrix. Slow modes of stiff systems would be
@@ -46,13 +47,7 @@ static ric_status check_obstacle(const ric_system *system, size_t obstacle, ric_
   return check_others(system, obstacle, error);
 }
 
-static double *take(double **store, size_t count) {
-  double *taken = *store;
-  *store += count;
-  return taken;
-}
-
-static ric_status allocate(ric_impact_modes *m, ric_error *error) {
+static ric_status allocate_modes(ric_impact_modes *m, ric_error *error) {
   size_t n = m->n, vectors = n + 12 + MODES_ORDER;
   if (n < SIZE_MAX / sizeof(double) / vectors)
     m->block = calloc(n * vectors, sizeof *m->block);
@@ -60,19 +55,19 @@ static ric_status allocate(ric_impact_modes *m, ric_error *error) {
   if (!m->block || !m->obstacles)
     return ric_fail(error, RIC_ENOMEM, "no memory for the modes of %zu coordinates", n);
   double *store = m->block;
-  m->shape = take(&store, n * n);
-  m->frequency = take(&store, n);
-  m->seen = take(&store, n);
-  m->mobility = take(&store, n);
-  m->amplitude = take(&store, n);
-  m->reach = take(&store, n);
-  m->q = take(&store, n);
-  m->v = take(&store, n);
-  m->cosine = take(&store, n);
-  m->sine = take(&store, n);
-  m->even = take(&store, n);
-  m->odd = take(&store, n);
-  m->series = take(&store, (MODES_ORDER + 1) * n);
+  m->shape = number_store_take(&store, n * n);
+  m->frequency = number_store_take(&store, n);
+  m->seen = number_store_take(&store, n);
+  m->mobility = number_store_take(&store, n);
+  m->amplitude = number_store_take(&store, n);
+  m->reach = number_store_take(&store, n);
+  m->q = number_store_take(&store, n);
+  m->v = number_store_take(&store, n);
+  m->cosine = number_store_take(&store, n);
+  m->sine = number_store_take(&store, n);
+  m->even = number_store_take(&store, n);
+  m->odd = number_store_take(&store, n);
+  m->series = number_store_take(&store, (MODES_ORDER + 1) * n);
   return RIC_OK;
 }
 
@@ -137,7 +132,7 @@ static void look_at_modes(ric_impact_modes *m) {
 }
 
 static ric_status build(ric_impact_modes *m, const ric_system *system, ric_error *error) {
-  RIC_TRY(allocate(m, error));
+  RIC_TRY(allocate_modes(m, error));
   memcpy(m->obstacles, system->obstacles, m->obstacle_count * sizeof *m->obstacles);
   RIC_TRY(ric_normal_modes(system, m->frequency, m->shape, error));
   if (!(m->frequency[0] > 0))

@@ -230,7 +230,7 @@ static double largest_displacement(ric_impact_modes *m, const periodic_response 
   return fmax(fmax(at_half, largest(m->q, m->n)), largest(m->v, m->n) / m->fastest);
 }
 
-static void look(ric_impact_modes *m, const periodic_response *r, impact_verdict *verdict) {
+static void find_gaps(ric_impact_modes *m, const periodic_response *r, impact_verdict *verdict) {
   verdict->scale = largest_displacement(m, r);
   half_period_smallest(m, r, minimum_tol * verdict->scale, &verdict->free, &verdict->own);
 }
@@ -242,7 +242,7 @@ static const least_gap *smaller(const impact_verdict *v) {
 double impact_verdict_margin(ric_impact_modes *modes, double period, periodic_response *response,
                              impact_verdict *verdict) {
   response_find(modes, period, 0, response);
-  look(modes, response, verdict);
+  find_gaps(modes, response, verdict);
   return smaller(verdict)->value / verdict->scale;
 }
 
@@ -276,7 +276,7 @@ static void judge_special(const ric_impact_modes *m, const periodic_response *r,
     snprintf(v->reason + used, sizeof v->reason - (size_t)used, "; inadmissible, the impulse pulls");
 }
 
-static void judge(ric_impact_modes *m, const periodic_response *r, impact_verdict *v) {
+static void give_verdict(ric_impact_modes *m, const periodic_response *r, impact_verdict *v) {
   double zero = m->options.grazing_tol * v->scale, rate = response_gap_rate(m, r);
   double left = fabs(m->q[m->hit] - m->obstacles[m->obstacle].position);
   v->reason[0] = '\0';
@@ -303,8 +303,8 @@ static void judge(ric_impact_modes *m, const periodic_response *r, impact_verdic
 void impact_verdict_find(ric_impact_modes *modes, double period, periodic_response *response, impact_verdict *verdict) {
   response_find(modes, period, modes->options.resonance_tol, response);
   if (response->condition < modes->options.singular_condition) {
-    look(modes, response, verdict);
-    judge(modes, response, verdict);
+    find_gaps(modes, response, verdict);
+    give_verdict(modes, response, verdict);
     return;
   }
   verdict->outcome = RIC_SINGULAR;

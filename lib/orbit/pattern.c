@@ -3,8 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "unit_cell.h"
 #include "ricochet/pattern.h"
+#include "unit_cell.h"
 
 struct ric_pattern {
   size_t particles, start_count, half_count;

@@ -40,7 +40,8 @@ ric_orbit_options ric_orbit_options_default(void) {
                              .singular_condition = 1e9};
 }
 
-static ric_status allocate(ric_orbit *orbit, size_t coordinates, size_t speeds, size_t impacts, ric_error *error) {
+static ric_status allocate_orbit(ric_orbit *orbit, size_t coordinates, size_t speeds, size_t impacts,
+                                 ric_error *error) {
   size_t numbers = 2 * (coordinates + speeds) + 3 * impacts;
   *orbit = (ric_orbit){.particles = coordinates, .speeds = speeds, .impacts = impacts};
   bool fits = coordinates < SIZE_MAX / 128 && speeds < SIZE_MAX / 128 && impacts < SIZE_MAX / 128;
@@ -65,11 +66,11 @@ ric_status ric_orbit_init(ric_orbit *orbit, size_t particles, size_t impacts, ri
   if (particles < 1 || impacts < 1 || impacts > particles)
     return ric_fail(error, RIC_EINVAL, "orbit of %zu particles and %zu impacts, expected 1 <= impacts <= particles",
                     particles, impacts);
-  return allocate(orbit, particles, particles, impacts, error);
+  return allocate_orbit(orbit, particles, particles, impacts, error);
 }
 
 ric_status ric_orbit_init_for(ric_orbit *orbit, const ric_system *system, size_t impacts, ric_error *error) {
-  return allocate(orbit, ric_system_coordinates(system), ric_system_speeds(system), impacts, error);
+  return allocate_orbit(orbit, ric_system_coordinates(system), ric_system_speeds(system), impacts, error);
 }
 
 void ric_orbit_clear(ric_orbit *orbit) {

@@ -33,7 +33,7 @@ typedef struct search {
 } search;
 
 /* Ties within half the tolerance go to the first in time, then to the first particle. */
-static void look(const search *s, const motion_piece *piece, size_t i) {
+static void find_smallest_gap(const search *s, const motion_piece *piece, size_t i) {
   size_t site = piece->segment.first + i;
   int is_free = unit_cell_role(s->cell, site) == RIC_ROLE_FREE;
   located *best = is_free ? &s->found->free : &s->found->impact;
@@ -55,7 +55,7 @@ static void search_piece(const motion_piece *piece, void *user) {
     double interesting =
         unit_cell_role(s->cell, site) == RIC_ROLE_FREE ? s->found->free.value - s->tolerance / 2 : s->small;
     if (gap <= interesting && gap < INFINITY)
-      look(s, piece, i);
+      find_smallest_gap(s, piece, i);
   }
 }
 

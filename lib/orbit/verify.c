@@ -104,8 +104,8 @@ static double relative_difference(const double *a, const double *b, size_t count
   return largest > 0 ? difference / largest : difference;
 }
 
-static void judge(const ric_trajectory *tr, const ledger *l, const ric_run *run, const double *q, const double *u,
-                  size_t n, size_t m, double closure_tol) {
+static void give_verdict(const ric_trajectory *tr, const ledger *l, const ric_run *run, const double *q,
+                         const double *u, size_t n, size_t m, double closure_tol) {
   ric_verification *v = l->verification;
   if (run->outcome != RIC_RUN_COMPLETED) {
     v->result = RIC_RUN_FAILED;
@@ -168,7 +168,7 @@ ric_status ric_verify(const ric_system *system, double start, const double *q, c
   if (status == RIC_OK)
     status = run_period(tr, start, q, u, period, &l, &run, error);
   if (status == RIC_OK)
-    judge(tr, &l, &run, q, u, ric_system_coordinates(system), ric_system_speeds(system), o.closure_tol);
+    give_verdict(tr, &l, &run, q, u, ric_system_coordinates(system), ric_system_speeds(system), o.closure_tol);
   ledger_clear(&l);
   ric_trajectory_destroy(&tr);
   return status;

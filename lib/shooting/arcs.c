@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "impact/trajectory_state.h"
+#include "impact/trajectory.h"
 
 enum { MOST_PIECES = 10000 };
 
@@ -65,7 +65,8 @@ static ric_status take_turning(const ric_system *s, const char *where, const siz
   return RIC_OK;
 }
 
-static ric_status allocate(arc_plan *a, const ric_shooting_problem *p, size_t arcs, size_t cuts, ric_error *error) {
+static ric_status allocate_plan(arc_plan *a, const ric_shooting_problem *p, size_t arcs, size_t cuts,
+                                ric_error *error) {
   a->pieces = calloc(arcs * cuts, sizeof *a->pieces);
   a->impacts = calloc(p->count + 1, sizeof *a->impacts);
   a->sequence = calloc(p->count + 1, sizeof *a->sequence);
@@ -159,7 +160,7 @@ ric_status arcs_init(arc_plan *a, const ric_system *system, const ric_shooting_p
   RIC_TRY(check_problem(system, problem, error));
   bool even = a->kind == RIC_MOTION_EVEN;
   size_t arc_count = even ? problem->count + 1 : problem->count > 0 ? problem->count : 1;
-  RIC_TRY(allocate(a, problem, arc_count, cuts, error));
+  RIC_TRY(allocate_plan(a, problem, arc_count, cuts, error));
   a->count = arc_count * cuts;
   a->arc_count = arc_count;
   if (even) {

@@ -260,7 +260,7 @@ static ric_status climb(ladder *l, size_t functions, ric_error *error) {
   return try_guess(l, &better, error);
 }
 
-static ric_status judge(const ladder *l, double tolerance, ric_error *error) {
+static ric_status check_convergence(const ladder *l, double tolerance, ric_error *error) {
   if (l->functions == 0)
     return ric_fail(error, RIC_ENUMERIC, "Ritz's method converges with no number of functions up to %zu", l->r->most);
   if (tolerance == 0 || l->error_q <= tolerance)
@@ -275,7 +275,7 @@ static ric_status climb_all(ladder *l, double tolerance, double *c, ric_error *e
   RIC_TRY(ric_ritz_use(l->r, l->functions > 0 ? l->functions : l->r->most, NULL, error));
   if (l->functions > 0)
     memcpy(c, l->best, ric_ritz_unknowns(l->r) * sizeof *c);
-  return judge(l, tolerance, error);
+  return check_convergence(l, tolerance, error);
 }
 
 ric_status ric_ritz_refine(ric_ritz *r, ric_shooting *shooting, const double *z, double period, double tolerance,
@@ -363,7 +363,7 @@ static void lay_out(ric_ritz *r, size_t *used) {
   r->spare = number_block_take(r->block, used, n * row + 1);
 }
 
-static ric_status allocate(ric_ritz *r, ric_error *error) {
+static ric_status allocate_ritz(ric_ritz *r, ric_error *error) {
   size_t used;
   lay_out(r, &used);
   if (r->coordinates < SIZE_MAX / 64 / r->coordinates)
@@ -394,7 +394,7 @@ static ric_status tabulate(ric_ritz *r, ric_error *error) {
 
 static ric_status build(ric_ritz *r, ric_error *error) {
   RIC_TRY(ritz_check_system(r, error));
-  RIC_TRY(allocate(r, error));
+  RIC_TRY(allocate_ritz(r, error));
   return tabulate(r, error);
 }
 

@@ -3,8 +3,8 @@
 #include <string.h>
 
 #include "model/lattice_system.h"
-#include "ritz.h"
 #include "numeric/constants.h"
+#include "ritz.h"
 
 typedef struct equations {
   ric_ritz *r;

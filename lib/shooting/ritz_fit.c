@@ -6,8 +6,8 @@
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_linalg.h>
 
-#include "ritz.h"
 #include "numeric/constants.h"
+#include "ritz.h"
 
 /* Functions that others make up for, but for this part of the first one, are left out of fits. */
 static const double rank_tol = 1e-12;

@@ -8,6 +8,7 @@
 
 #include "numeric/largest.h"
 #include "numeric/newton.h"
+#include "numeric/number_block.h"
 #include "numeric/path_derivative.h"
 #include "ricochet/shooting.h"
 
@@ -163,13 +164,7 @@ static ric_status check_system(const ric_system *s, const ric_shooting_problem *
   return RIC_OK;
 }
 
-static double *take(double **store, size_t count) {
-  double *taken = *store;
-  *store += count;
-  return taken;
-}
-
-static ric_status allocate(ric_shooting *s, ric_error *error) {
+static ric_status allocate_shooting(ric_shooting *s, ric_error *error) {
   size_t size = s->arcs.size, c = s->arcs.count > 1 ? size : arcs_first_numbers(&s->arcs);
   s->columns = c;
   if (c < SIZE_MAX / 64 / size)
@@ -178,24 +173,24 @@ static ric_status allocate(ric_shooting *s, ric_error *error) {
   if (!s->block)
     return ric_fail(error, RIC_ENOMEM, "no memory for the tangent vectors of %zu numbers", size);
   double *store = s->block;
-  s->carried = take(&store, size * (c + 1));
-  s->ends = take(&store, size * (c + 2));
-  s->gap_row = take(&store, c + 2);
-  s->in_time = take(&store, c + 2);
-  s->x = take(&store, size);
-  s->rates = take(&store, size);
-  s->gradient = take(&store, size);
-  s->phase_at = take(&store, size);
-  s->phase_along = take(&store, size);
-  s->contact = take(&store, 2 * s->arcs.speeds);
-  s->residual = take(&store, s->arcs.unknowns);
+  s->carried = number_store_take(&store, size * (c + 1));
+  s->ends = number_store_take(&store, size * (c + 2));
+  s->gap_row = number_store_take(&store, c + 2);
+  s->in_time = number_store_take(&store, c + 2);
+  s->x = number_store_take(&store, size);
+  s->rates = number_store_take(&store, size);
+  s->gradient = number_store_take(&store, size);
+  s->phase_at = number_store_take(&store, size);
+  s->phase_along = number_store_take(&store, size);
+  s->contact = number_store_take(&store, 2 * s->arcs.speeds);
+  s->residual = number_store_take(&store, s->arcs.unknowns);
   return RIC_OK;
 }
 
 static ric_status build(ric_shooting *s, const ric_shooting_problem *p, ric_error *error) {
   RIC_TRY(arcs_init(&s->arcs, s->system, p, error));
   RIC_TRY(check_system(s->system, p, error));
-  RIC_TRY(allocate(s, error));
+  RIC_TRY(allocate_shooting(s, error));
   RIC_TRY(arc_runner_init(&s->runner, s->system, &p->flow, p->poll, error));
   RIC_TRY(impact_solver_init(&s->law, s->system, error));
   return tangent_jump_init(&s->jump, s->system, &s->law, s->columns + 2, error);

@@ -286,7 +286,7 @@ static double time_on_orbit(const ric_orbit *o, double time) {
   return t < 0 ? t + o->period : t;
 }
 
-static void judge(const ric_shooting *s, ric_orbit *o) {
+static void give_verdict(const ric_shooting *s, ric_orbit *o) {
   const shooting_gaps *g = s->gaps;
   double zero = s->grazing_tol;
   const gap_found *least = g->free.value <= g->own.value ? &g->free : &g->own;
@@ -364,7 +364,7 @@ ric_status shooting_judge(ric_shooting *s, const double *z, double given, ric_or
   o->mode = -1;
   o->harmonic = 0;
   keep_clearance(s, o);
-  judge(s, o);
+  give_verdict(s, o);
   return look_for_failure(s, z, o, error);
 }
 

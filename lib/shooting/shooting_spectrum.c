@@ -79,7 +79,7 @@ static ric_status pass(transfer *k, size_t index, double shift, ric_error *error
   return RIC_OK;
 }
 
-static ric_status check(const ric_shooting *s, double from, double to, double period, ric_error *error) {
+static ric_status check_times(const ric_shooting *s, double from, double to, double period, ric_error *error) {
   if (s->arcs.kind == RIC_MOTION_EVEN)
     return ric_fail(error, RIC_EINVAL, "derivatives between times of an even motion, expected another kind");
   if (fabs(from) < INFINITY && to >= from && to <= from + period * (1 + end_tol))
@@ -169,7 +169,7 @@ ric_status ric_shooting_transfer(ric_shooting *s, const double *z, double given,
   const size_t size = s->arcs.size;
   transfer k = {.s = s, .z = z, .x = x, .matrix = matrix};
   RIC_TRY(shooting_period(s, z, given, &k.period, error));
-  RIC_TRY(check(s, from, to, k.period, error));
+  RIC_TRY(check_times(s, from, to, k.period, error));
   RIC_TRY(shooting_spectrum_reserve(s, error));
   k.origin = piece_begin(&s->arcs.pieces[0], z, k.period);
   k.from = fmod(from - k.origin, k.period);

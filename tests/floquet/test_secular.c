@@ -4,7 +4,7 @@
 #include <complex.h>
 
 #include "floquet/determinant.h"
-#include "floquet/orbit_spectrum.h"
+#include "floquet/orbit_multipliers.h"
 #include "floquet/winding.h"
 #include "scenario/scenario.h"
 
@@ -22,8 +22,9 @@ static prepared prepare(scenario s) {
   assert_int_equal(ric_orbit_solver_create(NULL, &p.solver, NULL), RIC_OK);
   assert_int_equal(scenario_solve(&p.s, p.solver, &p.orbit, NULL), RIC_OK);
   assert_int_equal(orbit_spectrum_of(p.solver, &p.spectrum, NULL), RIC_OK);
-  assert_int_equal(kicks_of_orbit(&p.spectrum->kicks, &s.chain, s.pattern, &p.orbit, 1e-10, &grazing, NULL), RIC_OK);
-  assert_int_equal(secular_prepare(&p.spectrum->secular, &s.chain, &p.spectrum->kicks, s.period, NULL), RIC_OK);
+  assert_int_equal(orbit_impacts_find(&p.spectrum->impacts, &s.chain, s.pattern, &p.orbit, 1e-10, &grazing, NULL),
+                   RIC_OK);
+  assert_int_equal(secular_prepare(&p.spectrum->secular, &s.chain, &p.spectrum->impacts, s.period, NULL), RIC_OK);
   return p;
 }
 
@@ -53,7 +54,7 @@ static void determinant_is_the_product_over_multipliers_and_modes(void **state) 
   double worst = 0;
   for (int i = 0; i < 100; i++) {
     prepared p = prepare(scenario_few(&source, &ranges, 6));
-    assert_int_equal(reduced_compute(&p.spectrum->reduced, &p.s.chain, &p.spectrum->kicks, &p.orbit, NULL), RIC_OK);
+    assert_int_equal(reduced_compute(&p.spectrum->reduced, &p.s.chain, &p.spectrum->impacts, &p.orbit, NULL), RIC_OK);
     for (int k = 0; k < 5; k++) {
       double complex zeta = CMPLX(random_uniform(&source, 0.05, 1), random_uniform(&source, 0, 3.1));
       double complex ratio = cexp(secular_log(&p.spectrum->secular, zeta) - log_product(&p, ccosh(zeta)));
@@ -73,7 +74,7 @@ static void counts_on_the_circle_and_outside_are_those_of_the_eigenvalues(void *
     prepared p = prepare(scenario_few(&source, &ranges, 3));
     size_t n = p.s.chain.particles, beyond = 0, outside;
     const double radius = 0.01;
-    assert_int_equal(reduced_compute(&p.spectrum->reduced, &p.s.chain, &p.spectrum->kicks, &p.orbit, NULL), RIC_OK);
+    assert_int_equal(reduced_compute(&p.spectrum->reduced, &p.s.chain, &p.spectrum->impacts, &p.orbit, NULL), RIC_OK);
     for (size_t k = 0; k + 1 < n; k++) {
       double complex root =
           cacosh(CMPLX(p.spectrum->reduced.spectrum.alpha[k].re, p.spectrum->reduced.spectrum.alpha[k].im));
@@ -81,7 +82,7 @@ static void counts_on_the_circle_and_outside_are_those_of_the_eigenvalues(void *
     }
     assert_true(winding_outside(&p.spectrum->secular, radius, &outside));
     assert_int_equal(outside, beyond);
-    assert_true(circle_count(&p.spectrum->secular, 1e-4, 40) + outside <= n);
+    assert_true(unit_circle_count(&p.spectrum->secular, 1e-4, 40) + outside <= n);
     discard(&p);
   }
 }

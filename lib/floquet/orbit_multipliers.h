@@ -1,13 +1,13 @@
 /* The workspace for multipliers of chain orbits, kept by the orbit solver from call to call: internal to the room. */
-#ifndef RICOCHET_ORBIT_SPECTRUM_H
-#define RICOCHET_ORBIT_SPECTRUM_H
+#ifndef RICOCHET_INTERNAL_ORBIT_MULTIPLIERS_H
+#define RICOCHET_INTERNAL_ORBIT_MULTIPLIERS_H
 
-#include "reduced.h"
 #include "orbit/solver.h"
+#include "reduced.h"
 #include "secular.h"
 
 typedef struct orbit_spectrum {
-  kick_list kicks;
+  orbit_impacts impacts;
   reduced reduced;
   secular secular;
 } orbit_spectrum;

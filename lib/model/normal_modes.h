@@ -1,6 +1,6 @@
 /* The linear part of lattices and M-C-K systems as dense matrices: internal to the library. */
-#ifndef RICOCHET_LINEAR_PART_H
-#define RICOCHET_LINEAR_PART_H
+#ifndef RICOCHET_INTERNAL_NORMAL_MODES_H
+#define RICOCHET_INTERNAL_NORMAL_MODES_H
 
 #include "system_model.h"
 

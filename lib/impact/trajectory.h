@@ -1,6 +1,6 @@
 /* What a trajectory holds: internal to the impact room. */
-#ifndef RICOCHET_TRAJECTORY_STATE_H
-#define RICOCHET_TRAJECTORY_STATE_H
+#ifndef RICOCHET_INTERNAL_TRAJECTORY_H
+#define RICOCHET_INTERNAL_TRAJECTORY_H
 
 #include "impact_law.h"
 #include "locate.h"
@@ -25,7 +25,7 @@ typedef struct coming_rest {
 } coming_rest;
 
 /** What tangent vectors need where contacts meet. */
-typedef struct carried {
+typedef struct impact_tangents {
   tangent_jump jump;
   double *before;                                          /* [n + m] state before what is happening now */
   unsigned char *contact, *contact_before, *contact_after; /* [obstacles] the same for contacts: between impacts of one
@@ -38,7 +38,7 @@ typedef struct carried {
   ric_saltation_kind kind; /* of the last contacts; not differentiable: the tangent vectors are lost */
   size_t obstacle;         /* that has lost them, */
   double time;             /* and when */
-} carried;
+} impact_tangents;
 
 struct ric_trajectory {
   const ric_system *system;
@@ -60,7 +60,7 @@ struct ric_trajectory {
   coming_rest *coming; /* in no order */
   size_t coming_count, coming_capacity;
   double *rates, *shifted; /* [n + m] work */
-  carried carried;
+  impact_tangents tangents;
 
   const ric_observer *observer; /* of the run going on; NULL: none */
   ric_run *run;
@@ -84,7 +84,7 @@ void trajectory_show_kind(ric_trajectory *tr, ric_event_kind kind, size_t obstac
 ric_status contacts_begin(ric_trajectory *tr, ric_error *error);
 
 /** The flow stands at the first roots of a step: applies what happens there and restarts the flow. */
-ric_status contacts_meet(ric_trajectory *tr, ric_error *error);
+ric_status contacts_onset(ric_trajectory *tr, ric_error *error);
 
 /** Decides which of tr->settling persist and which open, and empties it. In systems whose contacts couple the list
  *  holds all that are closed, those that persist with them. */
@@ -101,20 +101,20 @@ ric_status contacts_keep_on(ric_trajectory *tr, bool *moved, ric_error *error);
 ric_status gap_acceleration(ric_trajectory *tr, size_t obstacle, double *acceleration, ric_error *error);
 
 /** Before contacts meet: remembers what tangent vectors need. Does nothing when none are carried; nor do the next. */
-void carried_mark(ric_trajectory *tr);
+void impact_tangents_mark(ric_trajectory *tr);
 
 /** A contact has been touched so that tangent vectors have no way on. */
-void carried_lose(ric_trajectory *tr, size_t obstacle, double time, ric_saltation_kind kind);
+void impact_tangents_lose(ric_trajectory *tr, size_t obstacle, double time, ric_saltation_kind kind);
 
 /** After the contacts have met: takes tangent vectors through the first `hits` of tr->impacts. */
-ric_status carried_meet(ric_trajectory *tr, size_t hits, ric_error *error);
+ric_status impact_tangents_jump(ric_trajectory *tr, size_t hits, ric_error *error);
 
 /** A contact persists from the start on, and holds the tangent vectors. */
-void carried_hold(ric_trajectory *tr, size_t obstacle);
-void carried_clear(carried *c);
+void impact_tangents_hold(ric_trajectory *tr, size_t obstacle);
+void impact_tangents_clear(impact_tangents *c);
 
 /** Tangent vectors that are lost are carried no more. @param reason  text of why, set */
-ric_status carried_end(ric_trajectory *tr, char *reason, size_t room, ric_error *error);
+ric_status impact_tangents_end(ric_trajectory *tr, char *reason, size_t room, ric_error *error);
 
 /** Finds the impacts of tr->impacts [count] whose series accumulates soon, and sets their `accumulation`: the time from
  *  now, NaN for all others. @param hits  how many of them are new, the first ones; the others persist */

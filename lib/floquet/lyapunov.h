@@ -2,8 +2,8 @@
  *
  * A course carries tangent vectors along a trajectory from one run to the next, makes them orthonormal on the way and
  * adds up how they grow. Between runs the sums may be begun anew and the clock of the trajectory may be set. */
-#ifndef RICOCHET_LYAPUNOV_COURSE_H
-#define RICOCHET_LYAPUNOV_COURSE_H
+#ifndef RICOCHET_INTERNAL_LYAPUNOV_H
+#define RICOCHET_INTERNAL_LYAPUNOV_H
 
 #include "numeric/linear.h"
 #include "ricochet/lyapunov.h"
