@@ -8,7 +8,7 @@
 
 #include <gsl/gsl_linalg.h>
 
-#include "numeric/largest.h"
+#include "numeric/vector.h"
 
 enum { MOST_PERIOD = 10000, MOST_UNKNOWNS = 500 };
 
@@ -17,13 +17,6 @@ static const double most_growth = 100;
 
 /* States are the same when they differ by less, over the largest of the cycle. */
 static const double same = 1e-9;
-
-static double dot(const double *a, const double *b, size_t size) {
-  double sum = 0;
-  for (size_t i = 0; i < size; i++)
-    sum += a[i] * b[i];
-  return sum;
-}
 
 static void swap(double **a, double **b) {
   double *kept = *a;
@@ -116,7 +109,7 @@ static ric_status allocate_cycle(cycle_equations *e, ric_error *error) {
 }
 
 /* Room for the slopes by all unknowns: there are at least as many as states have numbers. */
-static ric_status make_room(cycle_equations *e, ric_error *error) {
+static ric_status reserve_cycle(cycle_equations *e, ric_error *error) {
   size_t m = e->map.size;
   e->unknowns = e->pieces * m + e->impacts;
   if (e->unknowns > MOST_UNKNOWNS)
@@ -147,7 +140,7 @@ ric_status cycle_equations_init(cycle_equations *e, const ric_map_line *line, do
   RIC_TRY(cycle_equations_set(e, p, error));
   take_itinerary(e, z);
   cut(e);
-  return make_room(e, error);
+  return reserve_cycle(e, error);
 }
 
 void cycle_equations_clear(cycle_equations *e) {
@@ -201,7 +194,7 @@ static void impact_row(const cycle_equations *e, double y, size_t which, double 
   J[row * stride + row] += 2 * y;
 }
 
-static void advance(cycle_equations *e, bool with_slopes) {
+static void advance_iterates(cycle_equations *e, bool with_slopes) {
   apply(&e->map, e->z, 1, e->next);
   swap(&e->z, &e->next);
   if (!with_slopes)
@@ -242,7 +235,7 @@ void cycle_equations_at(cycle_equations *e, const double *x, double *F, double *
         clearance[k] = e->hits[k] ? y[which] : dot(e->map.eta, e->z, e->map.size) - e->d;
       if (e->hits[k])
         impact_row(e, y[which], which, F, J, stride);
-      advance(e, J != NULL);
+      advance_iterates(e, J != NULL);
       if (e->hits[k]) {
         add_impact(e, y[which], which);
         which++;
@@ -413,7 +406,7 @@ static ric_status assemble(cycle_curve *c, const double *x, const double *row, b
 }
 
 /* Solves for the right side, in its place. Columns and rows are scaled, so that what is small counts as much. */
-static ric_status solve(cycle_curve *c, ric_error *error) {
+static ric_status solve_corrections(cycle_curve *c, ric_error *error) {
   for (size_t i = 0; i < c->size; i++) {
     double largest = 0, *row = gsl_matrix_ptr(c->matrix, i, 0);
     for (size_t j = 0; j < c->size; j++)
@@ -447,7 +440,7 @@ ric_status cycle_curve_correct(cycle_curve *c, double *x, const double *row, dou
   double before = INFINITY, way = 0;
   for (int k = 0; k < MOST_CORRECTIONS; k++) {
     RIC_TRY(assemble(c, x, row, row != NULL, error));
-    RIC_TRY(solve(c, error));
+    RIC_TRY(solve_corrections(c, error));
     const double *by = c->right->data, size = relative(c, by);
     for (size_t i = 0; i < c->size; i++)
       x[i] += by[i];
@@ -467,7 +460,7 @@ ric_status cycle_curve_tangent(cycle_curve *c, const double *x, const double *ro
   RIC_TRY(assemble(c, x, row, true, error));
   gsl_vector_set_zero(c->right);
   gsl_vector_set(c->right, c->size - 1, 1);
-  RIC_TRY(solve(c, error));
+  RIC_TRY(solve_corrections(c, error));
   double length = sqrt(cycle_curve_product(c, c->right->data, c->right->data));
   for (size_t i = 0; i < c->size; i++)
     tangent[i] = c->right->data[i] / length;

@@ -227,7 +227,7 @@ static double wanted(const walk *w, double length, bool good) {
 }
 
 /* Makes a step, and sets the length of the next. */
-static ric_status step(walk *w, double *length, double bound, ric_error *error) {
+static ric_status step_window(walk *w, double *length, double bound, ric_error *error) {
   for (;;) {
     bool good = false;
     if (ric_poll_stops(w->poll))
@@ -354,7 +354,7 @@ static ric_status find_edge(walk *w, double bound, double step_in_p, ric_cycle_e
   w->before.place = 0;
   double length = fmin(step_in_p / fabs(w->here.tangent[last]), longest);
   for (size_t k = 0; k < MOST_STEPS; k++) {
-    RIC_TRY(step(w, &length, bound, error));
+    RIC_TRY(step_window(w, &length, bound, error));
     if (ends_window(w, &w->next))
       return find_first(w, edge);
     if (parameter_of(w, &w->next) == bound) {

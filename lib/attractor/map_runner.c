@@ -249,7 +249,7 @@ static ric_status run_on(ric_map_runner *r, double *state, size_t count, ric_err
 }
 
 /* Iterates, the last state being the first of the trace again. @param keeps  stores them */
-static ric_status advance(ric_map_runner *r, size_t until, bool keeps, ric_error *error) {
+static ric_status advance_maps(ric_map_runner *r, size_t until, bool keeps, ric_error *error) {
   size_t state = r->block.size * r->block.width;
   while (r->done < until && r->left > 0) {
     size_t count = least(least(r->piece, until - r->done), LOOK - r->done % LOOK);
@@ -316,9 +316,9 @@ static bool skip(ric_map_runner *r, size_t until) {
 static ric_status settle(ric_map_runner *r, size_t until, ric_error *error) {
   size_t state = r->block.size * r->block.width;
   while (r->done < until && r->left > 0) {
-    RIC_TRY(advance(r, least(until, r->done + REVIEW - CYCLE), false, error));
+    RIC_TRY(advance_maps(r, least(until, r->done + REVIEW - CYCLE), false, error));
     if (until - r->done < REVIEW)
-      return advance(r, until, false, error);
+      return advance_maps(r, until, false, error);
     size_t left = r->left;
     RIC_TRY(record(r, CYCLE, error));
     if (r->left == left && skip(r, until))
@@ -377,8 +377,8 @@ static void finish(ric_map_runner *r, size_t lane) {
            size * sizeof *a->lowest);
 }
 
-static void begin(ric_map_runner *r, const ric_grazing_map *const *maps, const double *d, ric_attractor *attractors,
-                  size_t count) {
+static void begin_run(ric_map_runner *r, const ric_grazing_map *const *maps, const double *d, ric_attractor *attractors,
+                      size_t count) {
   size_t width = r->block.width;
   map_block_load(&r->block, maps, d, count);
   r->attractors = attractors;
@@ -398,10 +398,10 @@ static ric_status run_block(ric_map_runner *r, ric_error *error) {
   size_t aligning = o->exponents > 0 ? least(o->transient, align_time) : 0;
   RIC_TRY(settle(r, o->transient - aligning, error));
   map_block_carry(&r->block, r->directions, o->exponents);
-  RIC_TRY(advance(r, o->transient, false, error));
+  RIC_TRY(advance_maps(r, o->transient, false, error));
   begin_measuring(r);
-  RIC_TRY(advance(r, o->transient + o->keep, true, error));
-  RIC_TRY(advance(r, o->transient + o->measure, false, error));
+  RIC_TRY(advance_maps(r, o->transient + o->keep, true, error));
+  RIC_TRY(advance_maps(r, o->transient + o->measure, false, error));
   end_measuring(r);
   RIC_TRY(record(r, 2 * o->period_limit, error));
   for (size_t l = 0; l < r->count; l++)
@@ -431,7 +431,7 @@ ric_status ric_map_runner_run(ric_map_runner *r, size_t count, const ric_grazing
   for (size_t i = 0; i < count; i++)
     RIC_TRY(check_run(r, i, maps[i], d[i], &attractors[i], error));
   for (size_t first = 0; first < count; first += r->block.width) {
-    begin(r, maps + first, d + first, attractors + first, least(count - first, r->block.width));
+    begin_run(r, maps + first, d + first, attractors + first, least(count - first, r->block.width));
     RIC_TRY(run_block(r, error));
   }
   return RIC_OK;

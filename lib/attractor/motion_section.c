@@ -463,7 +463,7 @@ static ric_status travel(journey *j, ric_error *error) {
   return j->over ? RIC_OK : decide(j, error);
 }
 
-static ric_status make_room(ric_motion_section *s, size_t width, size_t limit, ric_error *error) {
+static ric_status reserve_states(ric_motion_section *s, size_t width, size_t limit, ric_error *error) {
   size_t room = (2 * limit + 2) * width; /* with the last state as it is */
   if (room <= s->window_room)
     return RIC_OK;
@@ -500,7 +500,7 @@ ric_status ric_motion_section_run(ric_motion_section *section, const ric_attract
   if (o.exponents > numbers)
     return ric_fail(error, RIC_EINVAL, "exponents = %zu, expected at most %zu", o.exponents, numbers);
   j.width = c->size > numbers ? c->size + 1 : c->size;
-  RIC_TRY(make_room(section, j.width, o.period_limit, error));
+  RIC_TRY(reserve_states(section, j.width, o.period_limit, error));
   c->course = NULL;
   c->trajectory->options.poll = o.poll.call ? o.poll : c->options.trajectory.poll;
   RIC_TRY(crossings_start(c, attractor->z, error));

@@ -35,7 +35,7 @@ double *bordered_place(bordered *b, size_t unknowns, double *block) {
 }
 
 /* A problem that fails without a word gets one. */
-static ric_status evaluate(bordered *b, const double *x, ric_error *error) {
+static ric_status evaluate_bordered(bordered *b, const double *x, ric_error *error) {
   const ric_curve_problem *problem = b->problem;
   double p = x[b->size - 1];
   if (ric_poll_stops(b->poll))
@@ -78,7 +78,7 @@ static double least_pivot(const bordered *b) {
 
 ric_status bordered_factor(bordered *b, const double *x, const double *row, ric_error *error) {
   b->singular = false;
-  RIC_TRY(evaluate(b, x, error));
+  RIC_TRY(evaluate_bordered(b, x, error));
   assemble(b, row);
   factor(b);
   b->singular = least_pivot(b) == 0;
@@ -87,7 +87,7 @@ ric_status bordered_factor(bordered *b, const double *x, const double *row, ric_
   return RIC_OK;
 }
 
-static void solve(bordered *b, double *z) {
+static void solve_bordered(bordered *b, double *z) {
   gsl_matrix_view a = gsl_matrix_view_array(b->matrix, b->size, b->size);
   gsl_vector_view tau = gsl_vector_view_array(b->tau, b->size), solution = gsl_vector_view_array(z, b->size);
   gsl_vector_view rhs = gsl_vector_view_array(b->residual, b->size);
@@ -100,7 +100,7 @@ static void solve(bordered *b, double *z) {
 
 void bordered_correction(bordered *b, double *z) {
   b->residual[b->size - 1] = 0;
-  solve(b, z);
+  solve_bordered(b, z);
   for (size_t i = 0; i < b->size; i++)
     z[i] = -z[i];
 }
@@ -108,7 +108,7 @@ void bordered_correction(bordered *b, double *z) {
 void bordered_null_vector(bordered *b, double *z) {
   memset(b->residual, 0, b->size * sizeof *b->residual);
   b->residual[b->size - 1] = 1;
-  solve(b, z);
+  solve_bordered(b, z);
 }
 
 /* Each Householder reflection of Q has the determinant -1; one with tau = 0 is the identity. That of L is 1. */

@@ -37,7 +37,7 @@ static void end(walk *w, ric_curve_end how, const char *reason) {
 }
 
 /* Shows a point to the caller. */
-static void show(walk *w, const curve_node *node, double step) {
+static void report_node(walk *w, const curve_node *node, double step) {
   size_t n = w->c->problem.unknowns;
   const ric_curve_point point = {.kind = node->kind,
                                  .which = node->which,
@@ -81,7 +81,7 @@ static ric_status begin_at(ric_curve *c, ric_error *error) {
 }
 
 /* The first point. */
-static ric_status begin(walk *w, double *u, double p, const double *tangent, ric_error *error) {
+static ric_status begin_curve(walk *w, double *u, double p, const double *tangent, ric_error *error) {
   ric_curve *c = w->c;
   size_t n = c->problem.unknowns;
   if (!(p >= c->options.p_low && p <= c->options.p_high && isfinite(p)))
@@ -97,12 +97,12 @@ static ric_status begin(walk *w, double *u, double p, const double *tangent, ric
   c->pasts = 0;
   w->h = c->options.step;
   w->along = tangent != NULL;
-  show(w, &c->from, 0);
+  report_node(w, &c->from, 0);
   return RIC_OK;
 }
 
 /* Steps to `to`, shorter and shorter until one succeeds. @param shortened  whether the first did not */
-static ric_status step(walk *w, bool *landed, bool *closed, bool *shortened) {
+static ric_status step_curve(walk *w, bool *landed, bool *closed, bool *shortened) {
   ric_curve *c = w->c;
   *shortened = *landed = *closed = false;
   for (;; w->h *= shorter, *shortened = true) {
@@ -139,18 +139,18 @@ static ric_status show_special(walk *w) {
     if (w->along && c->found[k].sigma < start_itself * c->to.sigma)
       continue;
     w->run->special++;
-    show(w, &c->found[k], c->found[k].sigma);
+    report_node(w, &c->found[k], c->found[k].sigma);
   }
   return RIC_OK;
 }
 
 /* One step, shown; sets the end when it is the last. */
-static ric_status advance(walk *w) {
+static ric_status advance_curve(walk *w) {
   ric_curve *c = w->c;
   bool landed, closed, shortened, keep = !w->along; /* a given tangent may be a guess */
   c->from.sigma = 0;
   step_set_row(c);
-  RIC_TRY(step(w, &landed, &closed, &shortened));
+  RIC_TRY(step_curve(w, &landed, &closed, &shortened));
   if (w->over)
     return RIC_OK;
   c->to.kind = RIC_CURVE_REGULAR;
@@ -159,7 +159,7 @@ static ric_status advance(walk *w) {
   if (w->over)
     return RIC_OK;
   w->run->points++;
-  show(w, &c->to, c->to.sigma);
+  report_node(w, &c->to, c->to.sigma);
   if (!w->over && (landed || closed || w->run->points >= c->options.points))
     end(w, landed ? RIC_CURVE_BOUND : closed ? RIC_CURVE_CLOSED : RIC_CURVE_POINTS, "");
   choose_next(w, shortened);
@@ -174,11 +174,11 @@ static bool starts_outward(const ric_curve *c) {
 }
 
 static ric_status walk_on(walk *w, double *u, double p, const double *tangent) {
-  RIC_TRY(begin(w, u, p, tangent, &w->why));
+  RIC_TRY(begin_curve(w, u, p, tangent, &w->why));
   if (!w->over && starts_outward(w->c))
     end(w, RIC_CURVE_BOUND, "");
   while (!w->over)
-    RIC_TRY(advance(w));
+    RIC_TRY(advance_curve(w));
   return RIC_OK;
 }
 

@@ -56,7 +56,7 @@ void family_forget(ric_family *f) {
   f->at[0] = f->at[1] = f->seen_at[0] = f->seen_at[1] = NAN;
 }
 
-static int show(const ric_curve_point *c, void *user) {
+static int report_point(const ric_curve_point *c, void *user) {
   follower *w = user;
   ric_family *f = w->f;
   ric_family_point point = {.kind = kind_of(c->kind),
@@ -96,7 +96,7 @@ ric_status ric_family_follow(ric_family *f, double *z, double parameter, const d
   follower w = {.f = f, .point = point, .user = user, .run = run, .error = error ? error : &own};
   f->coincide = SIZE_MAX;
   family_forget(f);
-  RIC_TRY(ric_curve_follow(f->curve, z, parameter, tangent, show, &w, run, w.error));
+  RIC_TRY(ric_curve_follow(f->curve, z, parameter, tangent, report_point, &w, run, w.error));
   return w.status;
 }
 
@@ -176,7 +176,7 @@ ric_status family_residual(ric_family *f, const double *z, size_t by, double *F,
 }
 
 /* Points of the curve are ones at which it was evaluated: the same run looks at the motion. */
-static ric_status residual(const double *u, double p, double *F, double *J, double *F_p, void *user, ric_error *error) {
+static ric_status curve_residual(const double *u, double p, double *F, double *J, double *F_p, void *user, ric_error *error) {
   ric_family *f = user;
   bool exact = !f->problem.set;
   RIC_TRY(family_set(f, p, f->problem.second, error));
@@ -238,7 +238,7 @@ static ric_status allocate_family(ric_family *f, ric_error *error) {
   return ric_multipliers_init(&f->multipliers, f->shooting->arcs.size, error);
 }
 
-static ric_status build(ric_family *f, ric_error *error) {
+static ric_status build_family(ric_family *f, ric_error *error) {
   const ric_shooting_problem *m = &f->problem.motion;
   RIC_TRY(copy_hits(f, error));
   RIC_TRY(ric_shooting_create(f->problem.system, m, &f->shooting, error));
@@ -247,7 +247,7 @@ static ric_status build(ric_family *f, ric_error *error) {
   f->tests = TEST_IMPACTS + f->impacts + (m->count > 0 ? f->shooting->arcs.arc_count : 0);
   RIC_TRY(allocate_family(f, error));
   const ric_curve_problem curve = {
-      .unknowns = f->unknowns, .residual = residual, .tests = f->tests, .test = test, .user = f};
+      .unknowns = f->unknowns, .residual = curve_residual, .tests = f->tests, .test = test, .user = f};
   return ric_curve_create(&curve, &f->options.curve, &f->curve, error);
 }
 
@@ -277,7 +277,7 @@ ric_status ric_family_create(const ric_family_problem *problem, const ric_family
   f->options = o;
   f->coincide = SIZE_MAX;
   family_forget(f);
-  ric_status status = build(f, error);
+  ric_status status = build_family(f, error);
   if (status == RIC_OK)
     *family = f;
   else

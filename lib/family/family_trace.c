@@ -83,7 +83,8 @@ static ric_status gradient(tracer *t, const double *z, double first, double seco
 
 /* --- the extended equations --------------------------------------------------------------------------------------- */
 
-static ric_status residual(const double *u, double p, double *F, double *J, double *F_p, void *user, ric_error *error) {
+static ric_status trace_residual(const double *u, double p, double *F, double *J, double *F_p, void *user,
+                                 ric_error *error) {
   tracer *t = user;
   ric_family *f = t->f;
   size_t n = f->unknowns, size = n + 1;
@@ -124,7 +125,7 @@ static ric_status test(const double *u, double p, const double *t_u, double t_p,
   return status;
 }
 
-static int show(const ric_curve_point *c, void *user) {
+static int report_curve_point(const ric_curve_point *c, void *user) {
   tracer *t = user;
   ric_family_curve_point point;
   if (c->kind == RIC_CURVE_BRANCH_POINT)
@@ -202,7 +203,7 @@ static ric_status walk(tracer *t, const ric_family_point *point, const ric_curve
                        double *u) {
   size_t n = t->f->unknowns;
   const ric_curve_problem problem = {.unknowns = n + 1,
-                                     .residual = residual,
+                                     .residual = trace_residual,
                                      .tests = t->tests.count,
                                      .test = t->tests.count > 0 ? test : NULL,
                                      .user = t};
@@ -212,7 +213,7 @@ static ric_status walk(tracer *t, const ric_family_point *point, const ric_curve
   u[n] = point->parameter;
   RIC_TRY(choose_unit(t, point->z, point->parameter, t->f->problem.second, t->slopes));
   RIC_TRY(ric_curve_create(&problem, options, &curve, t->error));
-  ric_status status = ric_curve_follow(curve, u, t->f->problem.second, NULL, show, t, run, t->error);
+  ric_status status = ric_curve_follow(curve, u, t->f->problem.second, NULL, report_curve_point, t, run, t->error);
   ric_curve_destroy(&curve);
   return status == RIC_OK ? t->status : status;
 }

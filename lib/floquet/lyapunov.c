@@ -137,7 +137,7 @@ static bool report(lyapunov_course *c, ric_run *whole) {
 }
 
 /* One stride. @param over  whether it was the last */
-static ric_status advance(lyapunov_course *c, double end, ric_run *whole, bool *over, ric_error *error) {
+static ric_status advance_course(lyapunov_course *c, double end, ric_run *whole, bool *over, ric_error *error) {
   double start = time_now(c);
   ric_run part;
   RIC_TRY(ric_trajectory_carry(c->trajectory, c->count, c->vectors, c->vectors + c->n * c->count, error));
@@ -162,13 +162,14 @@ ric_status lyapunov_course_run(lyapunov_course *c, double end, ric_run *run, ric
   gsl_error_handler_t *handler = gsl_set_error_handler_off();
   ric_status status = RIC_OK;
   while (!over && status == RIC_OK)
-    status = advance(c, end, run, &over, error);
+    status = advance_course(c, end, run, &over, error);
   gsl_set_error_handler(handler);
   return status;
 }
 
 /* A whole run. */
-static ric_status run(lyapunov_course *c, double end, double *exponents, ric_lyapunov *lyapunov, ric_error *error) {
+static ric_status run_course(lyapunov_course *c, double end, double *exponents, ric_lyapunov *lyapunov,
+                             ric_error *error) {
   c->begin = time_now(c) + c->options.transient;
   RIC_TRY(lyapunov_course_run(c, end, &lyapunov->run, error));
   lyapunov->time = c->time;
@@ -190,7 +191,7 @@ ric_status ric_lyapunov_run(ric_trajectory *trajectory, double end, const ric_ly
   ric_status status = lyapunov_course_init(&c, trajectory, &o, error);
   gsl_set_error_handler(handler);
   if (status == RIC_OK)
-    status = run(&c, end, exponents, lyapunov, error);
+    status = run_course(&c, end, exponents, lyapunov, error);
   lyapunov_course_clear(&c);
   return status;
 }

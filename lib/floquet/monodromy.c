@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "numeric/largest.h"
+#include "numeric/vector.h"
 
 /* Sets M to the unit matrix: the tangent vectors to begin with. */
 static void set_unit(double *M, size_t size) {

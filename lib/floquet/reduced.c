@@ -12,7 +12,7 @@ void orbit_impacts_clear(orbit_impacts *list) {
   *list = (orbit_impacts){0};
 }
 
-static ric_status make_room(orbit_impacts *list, size_t count, ric_error *error) {
+static ric_status reserve_impacts(orbit_impacts *list, size_t count, ric_error *error) {
   if (count > list->capacity) {
     orbit_impact *more = realloc(list->items, count * sizeof *more);
     if (!more)
@@ -41,7 +41,7 @@ static double largest_displacement(const ric_orbit *orbit) {
 ric_status orbit_impacts_find(orbit_impacts *list, const ric_chain *chain, const ric_pattern *pattern,
                               const ric_orbit *orbit, double grazing_tol, size_t *grazing, ric_error *error) {
   double tiny = grazing_tol * largest_displacement(orbit);
-  RIC_TRY(make_room(list, orbit->impacts, error));
+  RIC_TRY(reserve_impacts(list, orbit->impacts, error));
   *grazing = list->count;
   for (size_t r = 0; r < list->count; r++) {
     orbit_impact *k = &list->items[r];

@@ -428,7 +428,7 @@ static const char *creep(cvodes_flow *f, double stop) {
   return trouble;
 }
 
-static const char *advance(cvodes_flow *f, double stop) {
+static const char *advance_solver(cvodes_flow *f, double stop) {
   ric_flow *flow = &f->base;
   size_t n = flow->system->coordinates, m = flow->system->speeds;
   double t = flow->time;
@@ -448,13 +448,13 @@ static const char *advance(cvodes_flow *f, double stop) {
   return NULL;
 }
 
-static ric_status step(ric_flow *flow, double stop, ric_error *error) {
+static ric_status cvodes_step(ric_flow *flow, double stop, ric_error *error) {
   cvodes_flow *f = (cvodes_flow *)flow;
   double span = f->restart ? 0 : cvodes_solver_span(&f->solver);
   bool lost = fabs(stop - flow->time) <= 256 * DBL_EPSILON * fmax(span, fmax(fabs(stop), fabs(flow->time)));
   f->solver.trouble_time = flow->time;
   f->whole = f->callback_failed = false;
-  const char *trouble = f->trouble ? f->trouble : lost ? creep(f, stop) : advance(f, stop);
+  const char *trouble = f->trouble ? f->trouble : lost ? creep(f, stop) : advance_solver(f, stop);
   f->restart = true; /* unless the whole step is accepted */
   if (!trouble)
     return RIC_OK;
@@ -501,7 +501,7 @@ static void destroy(ric_flow *flow) {
 }
 
 static const flow_method method = {.start = start,
-                                   .step = step,
+                                   .step = cvodes_step,
                                    .piece = piece,
                                    .accept = accept,
                                    .carry = carry,

@@ -80,7 +80,7 @@ static ric_status check_finite(const char *name, const double *x, size_t count, 
   return RIC_OK;
 }
 
-static ric_status begin(ric_flow *flow, ric_error *error) {
+static ric_status begin_flow(ric_flow *flow, ric_error *error) {
   unsigned long long revision = flow->system->revision;
   if (flow->method->begin)
     RIC_TRY(flow->method->begin(flow, flow->revision != revision, error));
@@ -100,7 +100,7 @@ ric_status ric_flow_start(ric_flow *flow, double t, const double *q, const doubl
     return ric_fail(error, RIC_EINVAL, "t = %g, expected a finite time", t);
   RIC_TRY(check_finite("q", q, n, error));
   RIC_TRY(check_finite("u", u, m, error));
-  RIC_TRY(begin(flow, error));
+  RIC_TRY(begin_flow(flow, error));
   flow->time = flow->end = t;
   flow->length = 0;
   flow->tangent.columns = 0;

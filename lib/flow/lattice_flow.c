@@ -222,7 +222,7 @@ static void shorten(ric_flow *flow, double length) {
   f->ended = 0;
 }
 
-static ric_status step(ric_flow *flow, double stop, ric_error *error) {
+static ric_status lattice_step(ric_flow *flow, double stop, ric_error *error) {
   lattice_flow *f = self(flow);
   double limit;
   flow->counts.force_evaluations++;
@@ -370,7 +370,7 @@ static void plan(lattice_flow *f) {
   f->base.pieces = (n + f->block - 1) / f->block;
 }
 
-static ric_status begin(ric_flow *flow, bool renewed, ric_error *error) {
+static ric_status lattice_begin(ric_flow *flow, bool renewed, ric_error *error) {
   lattice_flow *f = self(flow);
   f->stepper.trial = taylor_stepper_natural(&f->stepper);
   if (!renewed)
@@ -382,9 +382,9 @@ static ric_status begin(ric_flow *flow, bool renewed, ric_error *error) {
   return fit_series(f, error);
 }
 
-static const flow_method method = {.begin = begin,
+static const flow_method method = {.begin = lattice_begin,
                                    .start = start,
-                                   .step = step,
+                                   .step = lattice_step,
                                    .piece = piece,
                                    .accept = accept,
                                    .reaction = lattice_flow_reaction,

@@ -292,7 +292,7 @@ static double *take(double *store, size_t *used, size_t size) {
 }
 
 /* Lays the arrays of a block out in the store and returns its size. */
-static size_t lay_out(lattice_block *b, double *store) {
+static size_t lay_out_block(lattice_block *b, double *store) {
   size_t used = 0, levels = (size_t)(b->order + 1) * b->stride;
   b->c = take(store, &used, levels);
   for (int row = 0; row < BLOCK_ROWS; row++)
@@ -334,14 +334,14 @@ ric_status lattice_series_create(const ric_lattice *lattice, int order, size_t b
       s->few = malloc(sizeof *s->few);
       s->block.stride = padded(lattice_few_columns(block));
     }
-    s->store = calloc(lay_out(&s->block, NULL), sizeof *s->store);
+    s->store = calloc(lay_out_block(&s->block, NULL), sizeof *s->store);
     s->held_column = malloc(s->block.stride * sizeof *s->held_column);
   }
   if (!s || !s->store || !s->held_column || (few && !s->few)) {
     lattice_series_destroy(series);
     return ric_fail(error, RIC_ENOMEM, "no memory for the Taylor coefficients of %zu particles", block);
   }
-  lay_out(&s->block, s->store);
+  lay_out_block(&s->block, s->store);
   s->turn = NAN;
   return RIC_OK;
 }

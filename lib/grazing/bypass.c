@@ -7,7 +7,7 @@
 #include "impact/impact_law.h"
 #include "impact/locate.h"
 #include "local.h"
-#include "numeric/largest.h"
+#include "numeric/vector.h"
 #include "shooting/arcs.h"
 
 /* Where the gap of the free motion is smallest, and where it opens, forwards and backwards in time.
@@ -293,7 +293,7 @@ static ric_status check_bypass(const ric_system *system, size_t obstacle, const 
   return RIC_OK;
 }
 
-static ric_status build(ric_bypass *b, const ric_bypass_options *options, ric_error *error) {
+static ric_status build_bypass(ric_bypass *b, const ric_bypass_options *options, ric_error *error) {
   RIC_TRY(arc_runner_init(&b->runner, b->system, &options->flow, (ric_poll){0}, error));
   b->short_ways = arc_runner_flow(&b->runner)->options.method == RIC_FLOW_CVODES;
   RIC_TRY(gragg_init(&b->gragg, b->system, error));
@@ -332,7 +332,7 @@ ric_status ric_bypass_create(ric_system *system, size_t obstacle, const ric_bypa
   b->obstacle = obstacle;
   b->size = system->coordinates + system->speeds;
   b->reach = o.reach;
-  ric_status status = build(b, &o, error);
+  ric_status status = build_bypass(b, &o, error);
   if (status == RIC_OK)
     *bypass = b;
   else
@@ -567,7 +567,7 @@ static void extrapolate(scheme *k) {
   }
 }
 
-static ric_status run(scheme *k, ric_error *error) {
+static ric_status run_scheme(scheme *k, ric_error *error) {
   double time = first_part * fmin(1, k->b->reach), rate = k->at->acceleration / 2;
   for (int skipped = 0; k->level < LEVELS; time /= 2) {
     ric_status status = sample(k, rate * time * time, error);
@@ -594,7 +594,7 @@ ric_status ric_bypass_second(ric_bypass *b, const ric_grazing_local *at_grazing,
   k.state = k.last + LEVELS * b->size;
   k.image = k.state + b->size;
   k.best = k.image + b->size;
-  ric_status status = run(&k, error);
+  ric_status status = run_scheme(&k, error);
   if (status == RIC_OK)
     memcpy(kappa, k.best, b->size * sizeof *kappa);
   free(work);

@@ -10,7 +10,7 @@
 #include <gsl/gsl_errno.h>
 
 #include "dominant.h"
-#include "numeric/largest.h"
+#include "numeric/vector.h"
 #include "numeric/linear.h"
 #include "numeric/number_block.h"
 #include "ricochet/grazing_criterion.h"

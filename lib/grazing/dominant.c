@@ -11,8 +11,8 @@
 #include <gsl/gsl_eigen.h>
 #include <gsl/gsl_linalg.h>
 
-#include "numeric/largest.h"
 #include "numeric/number_block.h"
+#include "numeric/vector.h"
 
 /* Coordinates that L does not couple are balanced by eta and xi alone, by no more than 2 to this. */
 enum { most_exponent = 100 };
@@ -186,13 +186,6 @@ out:
 
 /* --- its eigenvectors --------------------------------------------------------------------------------------------- */
 
-static double dot(const double *x, const double *y, size_t n) {
-  double sum = 0;
-  for (size_t k = 0; k < n; k++)
-    sum += x[k] * y[k];
-  return sum;
-}
-
 static double dot_moduli(const double *x, const double *y, size_t n) {
   double sum = 0;
   for (size_t k = 0; k < n; k++)
@@ -286,7 +279,7 @@ static double length(const double *x, size_t n) {
   return gsl_blas_dnrm2(&view.vector);
 }
 
-static void evaluate(coefficient_run *run) {
+static void evaluate_coefficient(coefficient_run *run) {
   run->value = run->terms = 0;
   for (size_t k = 0; k < run->map->n; k++) {
     double term = run->map->eta[k] * run->x[k];
@@ -310,7 +303,7 @@ ric_status coefficient_run_init(coefficient_run *run, const balanced_map *map, c
   memcpy(run->row, map->eta, n * sizeof *run->row);
   run->noise[0] = (noise_bound){.rate = modulus > 0 ? modulus : map->size, .most = -INFINITY};
   run->noise[1] = (noise_bound){.rate = map->size, .most = -INFINITY};
-  evaluate(run);
+  evaluate_coefficient(run);
   return RIC_OK;
 }
 
@@ -351,7 +344,7 @@ void coefficient_run_advance(coefficient_run *run) {
   run->x_exponent += exponent;
   run->row_exponent += multiply(run, run->row, CblasTrans);
   run->i++;
-  evaluate(run);
+  evaluate_coefficient(run);
 }
 
 static double noise_of(const noise_bound *noise) {

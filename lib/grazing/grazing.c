@@ -148,8 +148,8 @@ static int see_contact(const ric_event *e, void *user) {
   return w->found[0] != 0;
 }
 
-static ric_status run(ric_trajectory *t, const ric_shooting *s, const double *x, double from, meetings *w,
-                      ric_error *error) {
+static ric_status run_trajectory(ric_trajectory *t, const ric_shooting *s, const double *x, double from, meetings *w,
+                                 ric_error *error) {
   const ric_observer observer = {.event = see_contact, .user = w};
   ric_run run;
   RIC_TRY(ric_trajectory_start(t, from, x, x + s->arcs.coordinates, error));
@@ -178,7 +178,7 @@ static ric_status degenerate_motion(ric_family *f, const double *z, const ric_gr
   if (status == RIC_OK)
     status = ric_trajectory_create(s->system, &options, &t, error);
   if (status == RIC_OK)
-    status = run(t, s, x, from, &w, error);
+    status = run_trajectory(t, s, x, from, &w, error);
   ric_trajectory_destroy(&t);
   free(x);
   RIC_TRY(status);
@@ -235,7 +235,7 @@ typedef struct minimum {
   touch touch;
 } minimum;
 
-static ric_status solve(minimum *k, double parameter, ric_error *error) {
+static ric_status solve_minimum(minimum *k, double parameter, ric_error *error) {
   ric_family *f = k->f;
   RIC_TRY(family_set(f, parameter, f->problem.second, error));
   RIC_TRY(ric_shooting_solve(f->shooting, k->z, f->given, 0, NULL, error));
@@ -247,7 +247,7 @@ static ric_status solve(minimum *k, double parameter, ric_error *error) {
 static ric_status try_slope(minimum *k, double parameter, double h, double *slope, ric_error *error) {
   double gap[2];
   for (int side = 0; side < 2; side++) {
-    RIC_TRY(solve(k, parameter + (side ? h : -h), error));
+    RIC_TRY(solve_minimum(k, parameter + (side ? h : -h), error));
     gap[side] = k->touch.gap;
   }
   *slope = (gap[1] - gap[0]) / (2 * h);
@@ -281,7 +281,7 @@ static ric_status refine(minimum *k, ric_grazing *g, ric_error *error) {
   double best = INFINITY;
   RIC_TRY(find_slope(k, g->parameter, &g->slope, error));
   for (int i = 0; i < MOST_STEPS; i++) {
-    RIC_TRY(solve(k, g->parameter, error));
+    RIC_TRY(solve_minimum(k, g->parameter, error));
     const double gap = fabs(k->touch.gap);
     if (gap <= gap_tol * k->size || (gap >= best / 2 && best < sqrt(gap_tol) * k->size))
       return RIC_OK;
@@ -305,7 +305,7 @@ static ric_status grazing_keep(const ric_family *f, const touch *at, double peri
 }
 
 static ric_status fill(minimum *k, ric_grazing *g, const ric_grazing_options *o, ric_error *error) {
-  RIC_TRY(solve(k, g->parameter, error));
+  RIC_TRY(solve_minimum(k, g->parameter, error));
   if (!(fabs(k->touch.gap) <= nearly * k->size))
     return ric_fail(error, RIC_ENUMERIC,
                     "the gap of obstacle %zu is %.3g at its minimum near t = %g: it is not touched", k->touch.obstacle,
@@ -444,7 +444,7 @@ static ric_status tests(const ric_family_curve_point *point, double *values, voi
   return RIC_OK;
 }
 
-static int show(const ric_family_curve_point *p, void *user) {
+static int report_grazing_point(const ric_family_curve_point *p, void *user) {
   tracer *t = user;
   t->status = find_criterion(t, p, t->error);
   if (t->status != RIC_OK)
@@ -484,7 +484,7 @@ ric_status ric_grazing_trace(ric_family *f, const ric_grazing *from, const ric_c
                     RIC_GRAZING_CURVE_COEFFICIENTS);
   ric_status status = begin_curve(&t, from, t.error);
   if (status == RIC_OK)
-    status = ric_family_trace(f, &point, options, &along, show, &t, run, t.error);
+    status = ric_family_trace(f, &point, options, &along, report_grazing_point, &t, run, t.error);
   if (status == RIC_OK)
     status = t.status;
   ric_grazing_clear(&t.grazing);

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "numeric/largest.h"
+#include "numeric/vector.h"
 
 /* An impact that leaves this part of the gap rate, and more, coming in is none. */
 static const double turn_tol = 1e-6;

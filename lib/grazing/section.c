@@ -7,6 +7,7 @@
 
 #include "numeric/constants.h"
 #include "numeric/number_block.h"
+#include "numeric/vector.h"
 
 /* kappa on a section.
  *
@@ -77,13 +78,6 @@ static void close(second *w) {
   free(w->block);
 }
 
-static double dot(const double *a, const double *b, size_t count) {
-  double sum = 0;
-  for (size_t i = 0; i < count; i++)
-    sum += a[i] * b[i];
-  return sum;
-}
-
 /** Coordinates [size] of what is left of a difference [state] of the motion a period later when it is moved along the
  *  flow onto the section. */
 /* Coordinates of what is left of a vector [state] when it is moved along the flow onto the section. */
@@ -96,7 +90,7 @@ static void section_project(const section *k, const double *vector, double *z) {
 }
 
 /* Sets `home`, n, and where -n goes. */
-static ric_status begin(second *w, ric_error *error) {
+static ric_status begin_second(second *w, ric_error *error) {
   const section *k = w->k;
   const ric_grazing *g = k->g;
   const size_t n = k->numbers;
@@ -294,7 +288,7 @@ static ric_status section_second(const section *k, ric_grazing_map *map, ric_err
   second w = {.k = k, .map = map};
   ric_status status = open(&w, error);
   if (status == RIC_OK)
-    status = begin(&w, error);
+    status = begin_second(&w, error);
   if (status == RIC_OK)
     status = approach(&w, map->kappa, error);
   close(&w);

@@ -2,7 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "numeric/largest.h"
+#include "numeric/vector.h"
 #include "numeric/list.h"
 #include "trajectory.h"
 
@@ -295,7 +295,7 @@ ric_status chatter_ahead(ric_trajectory *tr, size_t hits, ric_error *error) {
   return RIC_OK;
 }
 
-static ric_status make_room(ric_trajectory *tr, ric_error *error) {
+static ric_status reserve_work(ric_trajectory *tr, ric_error *error) {
   size_t count = tr->settling.count;
   if (count <= tr->settling_capacity)
     return RIC_OK;
@@ -377,7 +377,7 @@ static ric_status conclude(ric_trajectory *tr, size_t obstacle, bool persists, r
 static ric_status find_forces(ric_trajectory *tr, ric_error *error) {
   ric_flow *f = tr->flow;
   const index_list *list = &tr->settling;
-  RIC_TRY(make_room(tr, error));
+  RIC_TRY(reserve_work(tr, error));
   for (size_t i = 0; i < list->count; i++)
     flow_set_contact(f, list->items[i], CONTACT_OPEN);
   RIC_TRY(find_rates(tr, f->time, f->q, f->u, error));

@@ -29,7 +29,7 @@ void impact_tangents_clear(impact_tangents *c) {
   *c = (impact_tangents){0};
 }
 
-static ric_status make_room(ric_trajectory *tr, size_t columns, ric_error *error) {
+static ric_status reserve_tangents(ric_trajectory *tr, size_t columns, ric_error *error) {
   impact_tangents *c = &tr->tangents;
   size_t size = tr->system->coordinates + tr->system->speeds, count = tr->system->obstacle_count;
   if (c->jump.columns >= columns)
@@ -80,7 +80,7 @@ ric_status ric_trajectory_carry(ric_trajectory *tr, size_t columns, const double
     return ric_fail(error, RIC_EINVAL, "the trajectory has no start");
   RIC_TRY(ric_flow_carry(tr->flow, columns, dq, du, error));
   tr->tangents.kind = RIC_SALTATION_DIFFERENTIABLE;
-  ric_status status = columns > 0 ? make_room(tr, columns, error) : RIC_OK;
+  ric_status status = columns > 0 ? reserve_tangents(tr, columns, error) : RIC_OK;
   if (status != RIC_OK)
     (void)ric_flow_carry(tr->flow, 0, NULL, NULL, NULL);
   for (size_t i = 0; status == RIC_OK && tr->system->obstacles && i < tr->held.count; i++)

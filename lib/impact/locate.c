@@ -301,7 +301,7 @@ static ric_status scan_contact(scan *s, const ric_segment *piece, size_t obstacl
   return scan_part(s, piece, obstacle, functions[now], 0, 1, INFINITY, HALVINGS, &found);
 }
 
-static ric_status make_room(locator *l, size_t width, ric_error *error) {
+static ric_status reserve_reader(locator *l, size_t width, ric_error *error) {
   if (width <= l->width)
     return RIC_OK;
   free(l->lower);
@@ -318,7 +318,7 @@ static ric_status scan_coordinates(scan *s, const ric_segment *piece) {
   const ric_system *system = s->flow->system;
   locator *l = s->l;
   bool bounded = piece->coordinates > FEW_COORDINATES;
-  RIC_TRY(make_room(l, piece->coordinates, s->error));
+  RIC_TRY(reserve_reader(l, piece->coordinates, s->error));
   if (bounded)
     ric_segment_bounds(piece, l->lower, l->upper);
   for (size_t k = system_first_obstacle(system, piece->first); k < system->obstacle_count; k++) {

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "model/system_model.h"
-#include "numeric/largest.h"
+#include "numeric/vector.h"
 #include "numeric/path_derivative.h"
 #include "ricochet/saltation.h"
 
@@ -255,7 +255,7 @@ typedef struct sequence {
   ric_saltation_kind kind;
 } sequence;
 
-static ric_status begin(sequence *s, ric_error *error) {
+static ric_status begin_sequence(sequence *s, ric_error *error) {
   size_t size = s->system->coordinates + s->system->speeds;
   RIC_TRY(impact_solver_init(&s->law, s->system, error));
   RIC_TRY(tangent_jump_init(&s->jump, s->system, &s->law, size, error));
@@ -302,7 +302,7 @@ static ric_status go_round(sequence *s, bool backwards, bool first, const tangen
 }
 
 /* S [n + m][n + m] of one order. */
-static ric_status run(sequence *s, bool backwards, double *S, ric_error *error) {
+static ric_status run_sequence(sequence *s, bool backwards, double *S, ric_error *error) {
   size_t n = s->system->coordinates, size = n + s->system->speeds;
   tangents d = {.columns = size, .q = S, .u = S + n * size};
   bool any = true;
@@ -342,7 +342,7 @@ static ric_status check_sequence(const sequence *s, ric_error *error) {
 static ric_status run_both(sequence *s, double *S, double *states, ric_error *error) {
   size_t size = s->system->coordinates + s->system->speeds;
   for (int k = 0; k < 2; k++) {
-    RIC_TRY(run(s, k == 1, S + (size_t)k * size * size, error));
+    RIC_TRY(run_sequence(s, k == 1, S + (size_t)k * size * size, error));
     memcpy(states + (size_t)k * size, s->state, size * sizeof *states);
   }
   bool agree = tangent_jumps_agree(S, S + size * size, size * size) && tangent_jumps_agree(states, states + size, size);
@@ -359,7 +359,7 @@ ric_status ric_saltation_find(const ric_system *system, double t, const double *
       .system = system, .t = t, .grazing_tol = grazing_tol, .q = q, .u = u, .obstacles = obstacles, .count = count};
   RIC_TRY(check_sequence(&s, error));
   double *found = malloc(2 * (square + size) * sizeof *found);
-  ric_status status = found ? begin(&s, error) : ric_fail(error, RIC_ENOMEM, "no memory for %zu states", size);
+  ric_status status = found ? begin_sequence(&s, error) : ric_fail(error, RIC_ENOMEM, "no memory for %zu states", size);
   if (status == RIC_OK)
     status = run_both(&s, found, found + 2 * square, error);
   if (status == RIC_OK && s.kind != RIC_SALTATION_GRAZING) {

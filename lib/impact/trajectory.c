@@ -93,7 +93,7 @@ static ric_status check_room(const ric_trajectory *tr, ric_error *error) {
   return tr->options.pass_rigid ? RIC_OK : system_check_room(tr->system, error);
 }
 
-static ric_status build(ric_trajectory *tr, ric_error *error) {
+static ric_status build_trajectory(ric_trajectory *tr, ric_error *error) {
   const ric_system *s = tr->system;
   size_t states = s->coordinates + s->speeds, count = s->obstacle_count;
   RIC_TRY(check_room(tr, error));
@@ -141,7 +141,7 @@ ric_status ric_trajectory_create(const ric_system *system, const ric_trajectory_
     return ric_fail(error, RIC_ENOMEM, "no memory for a trajectory");
   tr->system = system;
   tr->options = o;
-  ric_status status = build(tr, error);
+  ric_status status = build_trajectory(tr, error);
   if (status == RIC_OK)
     *trajectory = tr;
   else
@@ -248,7 +248,7 @@ static double extent(ric_trajectory *tr, bool *meets) {
 }
 
 /* One step of the flow, up to its first event. */
-static ric_status advance(ric_trajectory *tr, double end, ric_error *error) {
+static ric_status advance_trajectory(ric_trajectory *tr, double end, ric_error *error) {
   ric_flow *f = tr->flow;
   bool meets, moved;
   RIC_TRY(ric_flow_step(f, contacts_next_rest(tr, end), error));
@@ -313,7 +313,7 @@ static ric_status move(ric_trajectory *tr, double end, ric_error *error) {
   while (!lost && !is_over(tr, end)) {
     if (ric_poll_stops(tr->options.poll))
       return ric_fail(error, RIC_ESTOPPED, "stopped at t = %g", tr->flow->time);
-    RIC_TRY(advance(tr, end, error));
+    RIC_TRY(advance_trajectory(tr, end, error));
     RIC_TRY(check_tangents(tr, &lost, error));
   }
   return RIC_OK;

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "numeric/largest.h"
+#include "numeric/vector.h"
 #include "numeric/number_block.h"
 #include "numeric/path_derivative.h"
 #include "system_model.h"
@@ -399,7 +399,7 @@ static ric_status check_model(const ric_first_order *model, ric_error *error) {
   return RIC_OK;
 }
 
-static size_t lay_out(first_order *s, double *block) {
+static size_t lay_out_first_order(first_order *s, double *block) {
   size_t n = s->model.states, k = s->held_most, used = 0;
   s->gap.point = number_block_take(block, &used, n);
   s->gradient = number_block_take(block, &used, n);
@@ -421,12 +421,12 @@ static size_t lay_out(first_order *s, double *block) {
 static bool allocate_first_order(first_order *s) {
   size_t count = s->model.obstacles;
   s->held_most = count < s->model.states ? count : s->model.states;
-  s->numbers = calloc(lay_out(s, NULL), sizeof *s->numbers);
+  s->numbers = calloc(lay_out_first_order(s, NULL), sizeof *s->numbers);
   s->ratio = calloc(count ? count : 1, sizeof *s->ratio);
   s->held = calloc(s->held_most ? s->held_most : 1, sizeof *s->held);
   if (!s->numbers || !s->ratio || !s->held)
     return false;
-  lay_out(s, s->numbers);
+  lay_out_first_order(s, s->numbers);
   return true;
 }
 

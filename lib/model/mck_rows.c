@@ -222,7 +222,7 @@ static ric_status factorise(mass_factor *f, const double *mass, size_t n, ric_er
   return check_pivots(f, mass, error);
 }
 
-static void solve(const mass_factor *f, double *x) {
+static void solve_mass(const mass_factor *f, double *x) {
   gsl_matrix_const_view a = gsl_matrix_const_view_array(f->ldl, f->n, f->n);
   gsl_vector_view v = gsl_vector_view_array(x, f->n);
   gsl_permutation p = {.size = f->n, .data = f->order};
@@ -248,7 +248,7 @@ static ric_status divide_matrix(mck_rows *rows, const mass_factor *f, const ric_
   for (size_t j = 0; j < n; j++) {
     for (size_t i = 0; i < n; i++)
       f->column[i] = f->square[i * n + j];
-    solve(f, f->column);
+    solve_mass(f, f->column);
     for (size_t i = 0; i < n; i++)
       f->square[i * n + j] = f->column[i];
   }
@@ -261,7 +261,7 @@ static void invert(const mass_factor *f, double *inverse) {
   memset(inverse, 0, n * n * sizeof *inverse);
   for (size_t i = 0; i < n; i++) {
     inverse[i * n + i] = 1;
-    solve(f, inverse + i * n);
+    solve_mass(f, inverse + i * n);
   }
   for (size_t i = 0; i < n; i++)
     for (size_t j = 0; j < i; j++)
@@ -275,9 +275,9 @@ static ric_status divide_all(mck_system *s, const ric_mck *mck, const mass_facto
   RIC_TRY(scaled_force(&s->force_cos, mck->force_cos, NULL, f->n, error));
   RIC_TRY(scaled_force(&s->force_sin, mck->force_sin, NULL, f->n, error));
   if (s->force_cos)
-    solve(f, s->force_cos);
+    solve_mass(f, s->force_cos);
   if (s->force_sin)
-    solve(f, s->force_sin);
+    solve_mass(f, s->force_sin);
   return RIC_OK;
 }
 

@@ -4,10 +4,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "numeric/largest.h"
 #include "numeric/linear.h"
 #include "numeric/number_block.h"
 #include "numeric/path_derivative.h"
+#include "numeric/vector.h"
 #include "system_model.h"
 #include "user_gap.h"
 
@@ -102,13 +102,6 @@ static const char *mechanical_free_rate(const mechanical *s, double t, const dou
 }
 
 /* Contacts of mechanical systems: how gaps change along a motion, and the forces that hold them. */
-
-static double dot(const double *a, const double *b, size_t count) {
-  double sum = 0;
-  for (size_t k = 0; k < count; k++)
-    sum += a[k] * b[k];
-  return sum;
-}
 
 /* g and w = M^-1 g of contact k of the list, and its row of g^T M^-1 g. */
 static const char *held_row(const mechanical *s, size_t k, size_t count, double t, const double *q) {
@@ -277,7 +270,7 @@ static ric_status check_model(const ric_mechanical *model, ric_error *error) {
   return RIC_OK;
 }
 
-static size_t lay_out(mechanical *s, double *block) {
+static size_t lay_out_mechanical(mechanical *s, double *block) {
   size_t n = s->model.coordinates, m = s->model.speeds, k = s->held_most, used = 0;
   s->mass = number_block_take(block, &used, m * m);
   s->B = number_block_take(block, &used, n * m);
@@ -299,12 +292,12 @@ static size_t lay_out(mechanical *s, double *block) {
 static bool allocate_mechanical(mechanical *s) {
   size_t count = s->model.obstacles;
   s->held_most = count < s->model.speeds ? count : s->model.speeds;
-  s->numbers = calloc(lay_out(s, NULL), sizeof *s->numbers);
+  s->numbers = calloc(lay_out_mechanical(s, NULL), sizeof *s->numbers);
   s->restitution = calloc(count ? count : 1, sizeof *s->restitution);
   s->held = calloc(s->held_most ? s->held_most : 1, sizeof *s->held);
   if (!s->numbers || !s->restitution || !s->held)
     return false;
-  lay_out(s, s->numbers);
+  lay_out_mechanical(s, s->numbers);
   return true;
 }
 

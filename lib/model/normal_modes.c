@@ -12,7 +12,7 @@
 #include "lattice_system.h"
 #include "mck_rows.h"
 #include "mck_system.h"
-#include "numeric/largest.h"
+#include "numeric/vector.h"
 #include "numeric/linear.h"
 #include "ricochet/normal_modes.h"
 
@@ -250,7 +250,7 @@ static ric_status decompose(problem *p, ric_error *error) {
   return RIC_OK;
 }
 
-static ric_status solve(problem *p, const ric_system *system, ric_error *error) {
+static ric_status solve_eigenproblem(problem *p, const ric_system *system, ric_error *error) {
   RIC_TRY(factorise(p, system, error));
   RIC_TRY(linear_part_stiffness(system, p->a, error));
   RIC_TRY(reduce(p, error));
@@ -280,7 +280,7 @@ ric_status ric_normal_modes(const ric_system *system, double *frequency, double 
   gsl_error_handler_t *handler = gsl_set_error_handler_off(); /* which would abort when there is no memory */
   ric_status status = problem_init(&p, system, error);
   if (status == RIC_OK)
-    status = solve(&p, system, error);
+    status = solve_eigenproblem(&p, system, error);
   for (size_t j = 0; status == RIC_OK && j < p.n; j++) {
     frequency[j] = ldexp(sqrt(p.values[j]), p.half_power);
     set_shape(&p, j, shape + j * p.n);

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "numeric/largest.h"
+#include "numeric/vector.h"
 #include "numeric/path_derivative.h"
 #include "ricochet/system.h"
 

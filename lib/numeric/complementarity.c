@@ -63,7 +63,7 @@ void complementarity_clear(complementarity_work *work) {
   *work = (complementarity_work){0};
 }
 
-static problem lay_out(const complementarity_work *w, size_t size) {
+static problem lay_out_work(const complementarity_work *w, size_t size) {
   double *next = w->values;
   problem p = {.size = size, .a = next, .factor = next + size * size};
   next += 2 * size * size;
@@ -123,7 +123,7 @@ static void remove_member(problem *p, size_t place) {
 /* --- exchanges ------------------------------------------------------------------------------------------------- */
 
 /* w_i, and the sum of the absolute values of its terms. */
-static double residual(const problem *p, size_t i, double *terms) {
+static double residual_at(const problem *p, size_t i, double *terms) {
   double w = p->b[i];
   *terms = fabs(w);
   for (size_t k = 0; k < p->count; k++) {
@@ -139,7 +139,7 @@ static size_t find_entering(const problem *p) {
   size_t found = p->size;
   double least = 0;
   for (size_t i = 0; i < p->size; i++) {
-    double terms = 0, w = p->state[i] == OUTSIDE ? residual(p, i, &terms) : 0;
+    double terms = 0, w = p->state[i] == OUTSIDE ? residual_at(p, i, &terms) : 0;
     if (w < least && w < -residual_tol * terms) {
       least = w;
       found = i;
@@ -194,7 +194,7 @@ static void include(problem *p, size_t enter) {
 
 /* As `enter` depends on S, its w is the same combination of those of S: zero, or what their rounding errors leave. */
 static bool is_rounding(const problem *p, size_t enter, const double *direction) {
-  double terms, sum = 1, w = residual(p, enter, &terms);
+  double terms, sum = 1, w = residual_at(p, enter, &terms);
   for (size_t k = 0; k < p->count; k++)
     sum += fabs(direction[k]);
   return fabs(w) <= residual_tol * terms * sum;
@@ -236,7 +236,7 @@ static const char *enter_set(problem *p, size_t enter) {
   return NULL;
 }
 
-static const char *solve(problem *p) {
+static const char *solve_problem(problem *p) {
   for (size_t round = 0; round < MOST_EXCHANGES * p->size; round++) {
     size_t enter = find_entering(p);
     if (enter == p->size)
@@ -254,8 +254,8 @@ ric_status complementarity_solve(complementarity_work *work, size_t size, const 
   if (size == 0)
     return RIC_OK;
   RIC_TRY(reserve(work, size, error));
-  problem p = lay_out(work, size);
-  const char *trouble = scale(&p, A, b) ? solve(&p) : not_semidefinite;
+  problem p = lay_out_work(work, size);
+  const char *trouble = scale(&p, A, b) ? solve_problem(&p) : not_semidefinite;
   if (trouble)
     return ric_fail(error, RIC_ENUMERIC, "%zu contacts that act together: %s", size, trouble);
   for (size_t i = 0; i < size; i++)

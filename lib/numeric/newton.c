@@ -9,7 +9,7 @@
 #include <sunlinsol/sunlinsol_dense.h>
 #include <sunmatrix/sunmatrix_dense.h>
 
-#include "largest.h"
+#include "vector.h"
 #include "sundials_context.h"
 
 enum { MOST_STEPS = 200 };
@@ -35,20 +35,20 @@ static int code_of(search *k, ric_status status) {
   return status == RIC_OK ? 0 : status == RIC_ENUMERIC ? 1 : -1;
 }
 
-static ric_status evaluate(search *k, N_Vector z, N_Vector F, double *J) {
+static ric_status evaluate_residual(search *k, N_Vector z, N_Vector F, double *J) {
   return k->problem->residual(N_VGetArrayPointer(z), N_VGetArrayPointer(F), J, k->problem->user, k->error);
 }
 
-static int residual(N_Vector z, N_Vector F, void *user) {
+static int kinsol_residual(N_Vector z, N_Vector F, void *user) {
   search *k = user;
-  return code_of(k, evaluate(k, z, F, NULL));
+  return code_of(k, evaluate_residual(k, z, F, NULL));
 }
 
 static int jacobian(N_Vector z, N_Vector F, SUNMatrix J, void *user, N_Vector spare, N_Vector other) {
   search *k = user;
   size_t n = k->problem->unknowns;
   (void)F, (void)other;
-  ric_status status = evaluate(k, z, spare, k->J);
+  ric_status status = evaluate_residual(k, z, spare, k->J);
   for (size_t i = 0; i < n && status == RIC_OK; i++)
     for (size_t j = 0; j < n; j++)
       SM_ELEMENT_D(J, i, j) = k->J[i * n + j];
@@ -69,7 +69,7 @@ static int set_up(search *k, double tolerance) {
   double *z = N_VGetArrayPointer(k->z), size = 1 + largest(z, k->problem->unknowns);
   N_VConst(1, k->z_scale);
   N_VConst(1 / size, k->F_scale);
-  int failed = silence(k->memory) || KINInit(k->memory, residual, k->z) || KINSetUserData(k->memory, k);
+  int failed = silence(k->memory) || KINInit(k->memory, kinsol_residual, k->z) || KINSetUserData(k->memory, k);
   failed = failed || KINSetLinearSolver(k->memory, k->solver, k->matrix) || KINSetJacFn(k->memory, jacobian);
   failed = failed || KINSetFuncNormTol(k->memory, tolerance) || KINSetScaledStepTol(k->memory, 1e-15);
   failed = failed || KINSetMaxSetupCalls(k->memory, 1) || KINSetNumMaxIters(k->memory, MOST_STEPS);
@@ -130,7 +130,7 @@ static const char *text_of(int code) {
   }
 }
 
-static ric_status run(search *k, double tolerance, int *iterations, ric_error *error) {
+static ric_status run_kinsol(search *k, double tolerance, int *iterations, ric_error *error) {
   long count = 0;
   double left = INFINITY;
   int code = KINSol(k->memory, k->z, KIN_LINESEARCH, k->z_scale, k->F_scale);
@@ -155,7 +155,7 @@ ric_status newton_solve(const newton_problem *problem, double *z, double toleran
   *iterations = 0;
   ric_status status = search_init(&k, z, tolerance, k.error);
   if (status == RIC_OK)
-    status = run(&k, tolerance, iterations, k.error);
+    status = run_kinsol(&k, tolerance, iterations, k.error);
   search_clear(&k);
   return status;
 }

@@ -131,7 +131,7 @@ static void look_at_modes(ric_impact_modes *m) {
   }
 }
 
-static ric_status build(ric_impact_modes *m, const ric_system *system, ric_error *error) {
+static ric_status build_modes(ric_impact_modes *m, const ric_system *system, ric_error *error) {
   RIC_TRY(allocate_modes(m, error));
   memcpy(m->obstacles, system->obstacles, m->obstacle_count * sizeof *m->obstacles);
   RIC_TRY(ric_normal_modes(system, m->frequency, m->shape, error));
@@ -155,7 +155,7 @@ ric_status ric_impact_modes_create(const ric_system *system, size_t obstacle, ri
   m->obstacle = obstacle;
   m->hit = system->obstacles[obstacle].coordinate;
   m->options = ric_orbit_options_default();
-  ric_status status = build(m, system, error);
+  ric_status status = build_modes(m, system, error);
   if (status == RIC_OK)
     *modes = m;
   else

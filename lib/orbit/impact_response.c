@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "numeric/constants.h"
-#include "numeric/largest.h"
+#include "numeric/vector.h"
 #include "ricochet/polynomial.h"
 
 /* Term of S; infinite at a resonance. */

@@ -45,8 +45,8 @@ typedef struct run {
 } run;
 
 /* One step of all blocks from (q, v) to (q_next, v_next). */
-static void step(motion *m, const ric_chain *chain, const run *r, size_t index, const double *q, const double *v,
-                 double *q_next, double *v_next, motion_visit visit, void *user) {
+static void step_motion(motion *m, const ric_chain *chain, const run *r, size_t index, const double *q, const double *v,
+                        double *q_next, double *v_next, motion_visit visit, void *user) {
   double start = r->start + (double)index * r->length;
   for (size_t first = 0; first < chain->particles; first += LATTICE_SERIES_BLOCK) {
     size_t rest = chain->particles - first, count = rest < LATTICE_SERIES_BLOCK ? rest : LATTICE_SERIES_BLOCK;
@@ -58,15 +58,15 @@ static void step(motion *m, const ric_chain *chain, const run *r, size_t index, 
   }
 }
 
-static ric_status advance(motion *m, const ric_chain *chain, const run *r, motion_visit visit, void *user,
-                          ric_poll poll, ric_error *error) {
+static ric_status advance_motion(motion *m, const ric_chain *chain, const run *r, motion_visit visit, void *user,
+                                 ric_poll poll, ric_error *error) {
   const double *q = r->q, *v = r->v;
   for (size_t i = 0; i < r->steps; i++) {
     if (ric_poll_stops(poll))
       return ric_fail(error, RIC_ESTOPPED, "stopped at t = %g", r->start + (double)i * r->length);
     bool to_end = (r->steps - 1 - i) % 2 == 0; /* the last step lands in q_end */
     double *q_next = to_end ? r->q_end : r->q_spare, *v_next = to_end ? r->v_end : r->v_spare;
-    step(m, chain, r, i, q, v, q_next, v_next, visit, user);
+    step_motion(m, chain, r, i, q, v, q_next, v_next, visit, user);
     q = q_next;
     v = v_next;
   }
@@ -106,8 +106,8 @@ ric_status motion_run(motion *m, const ric_chain *chain, double period, const bo
   backward.v_end = store + 5 * n;
   m->lattice = ric_lattice_of_chain(chain);
   RIC_TRY(lattice_series_begin(m->series, &m->lattice, NULL, error));
-  RIC_TRY(advance(m, chain, &forward, visit, user, poll, error));
-  RIC_TRY(advance(m, chain, &backward, visit, user, poll, error));
+  RIC_TRY(advance_motion(m, chain, &forward, visit, user, poll, error));
+  RIC_TRY(advance_motion(m, chain, &backward, visit, user, poll, error));
   if (mismatch) {
     double in_q = largest_difference(forward.q_end, backward.q_end, n);
     double in_v = largest_difference(forward.v_end, backward.v_end, n) / ric_chain_frequency_max(chain);

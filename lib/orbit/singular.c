@@ -27,7 +27,7 @@ typedef struct collection {
   size_t capacity, count;
 } collection;
 
-static ric_status evaluate(family *f, double parameter) {
+static ric_status evaluate_eigenvalues(family *f, double parameter) {
   unit_cell *cell = &f->solver->cell;
   if (f->along == RIC_ALONG_GAMMA)
     cell->chain.gamma = parameter;
@@ -38,12 +38,12 @@ static ric_status evaluate(family *f, double parameter) {
 static double eigenvalue_at(double parameter, void *user) {
   family *f = user;
   if (f->status == RIC_OK)
-    f->status = evaluate(f, parameter);
+    f->status = evaluate_eigenvalues(f, parameter);
   return f->status == RIC_OK ? f->eigenvalues[f->index] : NAN;
 }
 
 static ric_status count_negative(family *f, double parameter, size_t *negative) {
-  RIC_TRY(evaluate(f, parameter));
+  RIC_TRY(evaluate_eigenvalues(f, parameter));
   *negative = 0;
   while (*negative < f->solver->cell.impacts && f->eigenvalues[*negative] < 0)
     (*negative)++;

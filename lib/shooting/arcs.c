@@ -126,7 +126,7 @@ static size_t rows_of(const arc_plan *a, const arc_piece *p) {
   return p->how == PIECE_HALF ? a->coordinates : a->size + (p->how == PIECE_IMPACT ? 1 : 0);
 }
 
-static void lay_out(arc_plan *a, size_t arc_count, size_t cuts) {
+static void lay_out_plan(arc_plan *a, size_t arc_count, size_t cuts) {
   size_t state = 0, row = 0;
   for (size_t k = 0; k < arc_count * cuts; k++) {
     arc_piece *p = &a->pieces[k];
@@ -168,7 +168,7 @@ ric_status arcs_init(arc_plan *a, const ric_system *system, const ric_shooting_p
     RIC_TRY(take_turning(system, "at_half", problem->at_half, problem->half_count, a->at_half, error));
   }
   place_unknowns(a);
-  lay_out(a, arc_count, cuts);
+  lay_out_plan(a, arc_count, cuts);
   return RIC_OK;
 }
 
@@ -234,7 +234,7 @@ static void keep_state(const arc_runner *r, const ric_flow *flow, double *x, siz
     memcpy(d + n * columns, flow->tangent.u, m * columns * sizeof *d);
 }
 
-static void show(ric_flow *flow, const arc_watch *watcher) {
+static void report_segments(ric_flow *flow, const arc_watch *watcher) {
   for (size_t i = 0; watcher && i < ric_flow_pieces(flow); i++) {
     ric_segment piece = ric_flow_piece(flow, i);
     (void)watcher->segment(&piece, 1, watcher->user);
@@ -259,7 +259,7 @@ static ric_status flow_along(arc_runner *r, double from, double to, double *x, s
       return ric_fail(error, RIC_ESTOPPED, "stopped at t = %g", ric_flow_time(r->flow));
     RIC_TRY(check_steps(r, error));
     RIC_TRY(ric_flow_step(r->flow, to, error));
-    show(r->flow, watcher);
+    report_segments(r->flow, watcher);
     ric_flow_accept(r->flow, 1);
   }
   keep_state(r, r->flow, x, columns, d);

@@ -10,7 +10,7 @@
 
 #include "model/lattice_system.h"
 #include "numeric/constants.h"
-#include "numeric/largest.h"
+#include "numeric/vector.h"
 #include "numeric/newton.h"
 #include "numeric/number_block.h"
 #include "ricochet/ritz.h"
@@ -119,7 +119,7 @@ static void scale_slopes(const at_period *a, double *J) {
   }
 }
 
-static ric_status residual(const double *z, double *F, double *J, void *user, ric_error *error) {
+static ric_status ritz_residual(const double *z, double *F, double *J, void *user, ric_error *error) {
   const at_period *a = user;
   size_t last = ric_ritz_unknowns(a->r) - 1;
   put_units_on(a, z, a->r->spare);
@@ -171,7 +171,7 @@ ric_status ric_ritz_solve(ric_ritz *r, double *c, double period, int *iterations
   RIC_TRY(ritz_check_numbers(r, c, period, error));
   at_period at = units_of(r, c, period);
   const newton_problem problem = {
-      .name = "Ritz's method", .unknowns = ric_ritz_unknowns(r), .residual = residual, .user = &at};
+      .name = "Ritz's method", .unknowns = ric_ritz_unknowns(r), .residual = ritz_residual, .user = &at};
   take_units_off(&at, c, c);
   ric_status status = newton_solve(&problem, c, newton_tol, &count, error);
   put_units_on(&at, c, c);
@@ -345,7 +345,7 @@ static size_t choose_points(const ric_ritz_options *o) {
   return rules[k];
 }
 
-static void lay_out(ric_ritz *r, size_t *used) {
+static void lay_out_ritz(ric_ritz *r, size_t *used) {
   size_t n = r->coordinates, row = r->stride;
   *used = 0;
   r->tau = number_block_take(r->block, used, r->points);
@@ -365,12 +365,12 @@ static void lay_out(ric_ritz *r, size_t *used) {
 
 static ric_status allocate_ritz(ric_ritz *r, ric_error *error) {
   size_t used;
-  lay_out(r, &used);
+  lay_out_ritz(r, &used);
   if (r->coordinates < SIZE_MAX / 64 / r->coordinates)
     r->block = calloc(used, sizeof *r->block);
   if (!r->block)
     return ric_fail(error, RIC_ENOMEM, "no memory for Ritz's method with %zu coordinates", r->coordinates);
-  lay_out(r, &used);
+  lay_out_ritz(r, &used);
   for (size_t i = 0; i < r->coordinates; i++)
     r->unit[i * r->coordinates + i] = 1;
   return RIC_OK;
@@ -392,7 +392,7 @@ static ric_status tabulate(ric_ritz *r, ric_error *error) {
   return RIC_OK;
 }
 
-static ric_status build(ric_ritz *r, ric_error *error) {
+static ric_status build_ritz(ric_ritz *r, ric_error *error) {
   RIC_TRY(ritz_check_system(r, error));
   RIC_TRY(allocate_ritz(r, error));
   return tabulate(r, error);
@@ -425,7 +425,7 @@ ric_status ric_ritz_create(const ric_system *system, size_t obstacle, const ric_
                   .functions = o.functions,
                   .stride = o.constants ? o.functions + 1 : o.functions,
                   .points = choose_points(&o)};
-  ric_status status = build(r, error);
+  ric_status status = build_ritz(r, error);
   if (status == RIC_OK)
     *ritz = r;
   else

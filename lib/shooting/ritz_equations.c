@@ -4,6 +4,7 @@
 
 #include "model/lattice_system.h"
 #include "numeric/constants.h"
+#include "numeric/vector.h"
 #include "ritz.h"
 
 typedef struct equations {
@@ -33,13 +34,6 @@ ric_status ritz_check_numbers(const ric_ritz *r, const double *c, double period,
   if (period > 0 && period < INFINITY)
     return RIC_OK;
   return ric_fail(error, RIC_ENUMERIC, "period = %g, expected > 0", period);
-}
-
-static double dot(const double *a, const double *b, size_t count) {
-  double sum = 0;
-  for (size_t i = 0; i < count; i++)
-    sum += a[i] * b[i];
-  return sum;
 }
 
 /* Sets r->q, r->bend, r->rate, and cosines and sines, at a point. */

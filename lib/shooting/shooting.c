@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "numeric/largest.h"
+#include "numeric/vector.h"
 #include "numeric/newton.h"
 #include "numeric/number_block.h"
 #include "numeric/path_derivative.h"
@@ -106,7 +106,7 @@ typedef struct search {
   unsigned long long most_steps; /* of a motion; 0 before the first */
 } search;
 
-static ric_status residual(const double *z, double *F, double *J, void *user, ric_error *error) {
+static ric_status shooting_residual(const double *z, double *F, double *J, void *user, ric_error *error) {
   search *k = user;
   arc_runner *runner = &k->s->runner;
   unsigned long long before = ric_flow_counted(arc_runner_flow(runner)).steps;
@@ -135,7 +135,8 @@ ric_status ric_shooting_solve(ric_shooting *s, double *z, double given, double t
   int count = 0;
   double tol = tolerance == 0 ? default_tolerance : tolerance;
   search k = {.s = s, .given = given};
-  const newton_problem problem = {.name = "shooting", .unknowns = s->arcs.unknowns, .residual = residual, .user = &k};
+  const newton_problem problem = {
+      .name = "shooting", .unknowns = s->arcs.unknowns, .residual = shooting_residual, .user = &k};
   if (!(tol > 0 && tol < 1))
     return ric_fail(error, RIC_EINVAL, "tolerance = %g, expected 0 to 1", tolerance);
   ric_status status = newton_solve(&problem, z, tol, &count, error);
@@ -187,7 +188,7 @@ static ric_status allocate_shooting(ric_shooting *s, ric_error *error) {
   return RIC_OK;
 }
 
-static ric_status build(ric_shooting *s, const ric_shooting_problem *p, ric_error *error) {
+static ric_status build_shooting(ric_shooting *s, const ric_shooting_problem *p, ric_error *error) {
   RIC_TRY(arcs_init(&s->arcs, s->system, p, error));
   RIC_TRY(check_system(s->system, p, error));
   RIC_TRY(allocate_shooting(s, error));
@@ -222,7 +223,7 @@ ric_status ric_shooting_create(ric_system *system, const ric_shooting_problem *p
   s->grazing_tol = problem->grazing_tol > 0 ? problem->grazing_tol : default_grazing_tol;
   /* Even motions may be forced; it matters where a piece begins at a time that moves. */
   s->forced = problem->kind == RIC_MOTION_FORCED || problem->kind == RIC_MOTION_EVEN;
-  ric_status status = build(s, problem, error);
+  ric_status status = build_shooting(s, problem, error);
   if (status == RIC_OK)
     *shooting = s;
   else

@@ -39,6 +39,10 @@ struct ric_shooting {
   struct shooting_spectrum *spectrum; /* NULL until multipliers are asked for */
 };
 
+static inline bool shooting_is_even(const ric_shooting *s) {
+  return s->arcs.kind == RIC_MOTION_EVEN;
+}
+
 /** What is wanted of the end of a piece: its state; derivatives by the numbers of the equations, too; those by the
  *  whole first state, too. */
 typedef enum piece_wish { WISH_STATE, WISH_DERIVATIVES, WISH_WHOLE } piece_wish;

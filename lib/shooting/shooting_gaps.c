@@ -9,7 +9,7 @@ enum { HALVINGS = 30 };
 /* On values of minima, absolute; relative to values above 1, from which less would not take anything away. */
 static const double minimum_tol = 1e-14;
 
-static ric_status build(shooting_gaps *g, ric_shooting *s, ric_error *error) {
+static ric_status build_gaps(shooting_gaps *g, ric_shooting *s, ric_error *error) {
   size_t count = s->system->obstacle_count, n = s->arcs.coordinates;
   *g = (shooting_gaps){.s = s, .zero = s->grazing_tol};
   RIC_TRY(gap_reader_init(&g->reader, arc_runner_flow(&s->runner), error));
@@ -36,7 +36,7 @@ ric_status shooting_gaps_create(ric_shooting *s, shooting_gaps **gaps, ric_error
   *gaps = calloc(1, sizeof **gaps);
   if (!*gaps)
     return ric_fail(error, RIC_ENOMEM, "no memory for the gaps of a motion");
-  ric_status status = build(*gaps, s, error);
+  ric_status status = build_gaps(*gaps, s, error);
   if (status != RIC_OK)
     shooting_gaps_destroy(gaps);
   return status;

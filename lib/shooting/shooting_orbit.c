@@ -3,15 +3,11 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "numeric/largest.h"
+#include "numeric/vector.h"
 #include "shooting.h"
 
 /* A part of the period at which no harmonic of low order is zero. */
 static const double odd_part = 0.2371;
-
-static bool is_even(const ric_shooting *s) {
-  return s->arcs.kind == RIC_MOTION_EVEN;
-}
 
 /* The first state, with speeds that no damper leaves alone, in s->x. */
 static void set_state(ric_shooting *s, const double *z, double period) {
@@ -47,7 +43,7 @@ static bool gaps_move(const ric_shooting *s, double t, double later, double tole
 ric_status shooting_fit(ric_shooting *s, const double *z, double period, double tolerance, const char **why,
                         ric_error *error) {
   size_t n = s->arcs.coordinates, size = s->arcs.size;
-  bool timed = is_even(s) || s->arcs.kind == RIC_MOTION_FORCED;
+  bool timed = shooting_is_even(s) || s->arcs.kind == RIC_MOTION_FORCED;
   double t = odd_part * period, later = t + (timed ? period : t), *rates = s->rates, *other = s->ends;
   *why = NULL;
   set_state(s, z, period);
@@ -56,9 +52,9 @@ ric_status shooting_fit(ric_shooting *s, const double *z, double period, double 
   RIC_TRY(rates_at(s, later, other, error));
   if (!(difference(rates, other, 1, size) <= most) || gaps_move(s, t, later, tolerance))
     *why = timed ? "the forcing does not repeat after the period" : "forces or gaps depend on time";
-  for (size_t i = n; is_even(s) && i < size; i++)
+  for (size_t i = n; shooting_is_even(s) && i < size; i++)
     s->x[i] = -s->x[i];
-  if (*why || !is_even(s))
+  if (*why || !shooting_is_even(s))
     return RIC_OK;
   RIC_TRY(rates_at(s, -t, other, error));
   if (!(difference(rates + n, other + n, 1, n) <= most))

@@ -88,10 +88,6 @@ static ric_status check_times(const ric_shooting *s, double from, double to, dou
                   period);
 }
 
-static bool is_even(const ric_shooting *s) {
-  return s->arcs.kind == RIC_MOTION_EVEN;
-}
-
 void shooting_spectrum_destroy(shooting_spectrum **spectrum) {
   shooting_spectrum *k = *spectrum;
   if (!k)
@@ -110,7 +106,7 @@ void shooting_spectrum_destroy(shooting_spectrum **spectrum) {
 }
 
 static ric_status create(ric_shooting *s, shooting_spectrum **spectrum, ric_error *error) {
-  size_t size = s->arcs.size, n = s->arcs.coordinates, bordered = is_even(s) ? n + 1 : size;
+  size_t size = s->arcs.size, n = s->arcs.coordinates, bordered = shooting_is_even(s) ? n + 1 : size;
   shooting_spectrum *k = *spectrum = calloc(1, sizeof *k);
   if (k) {
     k->size = size;
@@ -130,7 +126,7 @@ static ric_status create(ric_shooting *s, shooting_spectrum **spectrum, ric_erro
   k->half = k->start + size;
   k->after = k->half + size;
   ric_status status = tangent_jump_init(&k->jump, s->system, &s->law, size, error);
-  if (status == RIC_OK && is_even(s))
+  if (status == RIC_OK && shooting_is_even(s))
     status = even_spectrum_reserve(&k->even, n, error);
   else if (status == RIC_OK)
     status = multiplier_work_init(&k->work, size, error);
@@ -264,9 +260,9 @@ static void set_half(ric_shooting *s) {
 
 ric_status shooting_spectrum_begin(ric_shooting *s, ric_error *error) {
   s->spectrum->grazing = false;
-  if (is_even(s))
+  if (shooting_is_even(s))
     RIC_TRY(look_at_turning(s, s->arcs.at_start, 0, error));
-  if (is_even(s))
+  if (shooting_is_even(s))
     set_start(s);
   else
     shooting_spectrum_identity(s->spectrum);
@@ -363,7 +359,7 @@ spectrum_tests shooting_spectrum_tests(ric_shooting *s) {
   if (k->grazing)
     return t;
   gsl_error_handler_t *handler = gsl_set_error_handler_off();
-  if (is_even(s)) {
+  if (shooting_is_even(s)) {
     even_tests(s, &t);
   } else {
     memcpy(k->bordered->data, k->matrix, k->size * k->size * sizeof *k->matrix);
@@ -405,7 +401,7 @@ ric_status shooting_multipliers(ric_shooting *s, const ric_multiplier_options *o
     return RIC_OK;
   }
   gsl_error_handler_t *handler = gsl_set_error_handler_off();
-  ric_status status = is_even(s)
+  ric_status status = shooting_is_even(s)
                           ? even_multipliers(s, &o, m, error)
                           : multiplier_work_find(&s->spectrum->work, s->spectrum->matrix, trivial_of(s), &o, m, error);
   gsl_set_error_handler(handler);
