@@ -12,23 +12,33 @@ static const double same = 1e-4;
 /* Beyond the first ones, attractors are not told apart: every task is compared with all of them. */
 enum { MOST_ATTRACTORS = 1000, LABEL_NONE = -1, LABEL_OTHER = -2 };
 
-#define INTEGER .type = COLUMN_I64, .units = "1"
-#define SOURCE  .source = "[FN97] section 6"
+#define SOURCE .source = "[FN97] section 6"
+
+typedef struct basin_label {
+  long long attractor;
+} basin_label;
+
+typedef struct basin_attractor {
+  long long period, tasks, first;
+  const double *lowest;
+} basin_attractor;
 
 static const column task_columns[] = {
     {.name = "attractor",
-     INTEGER,
+     INTEGER(basin_label, attractor),
      .long_name = "which attractor the start comes to; -1: none, -2: one past the first 1000",
      SOURCE},
 };
 
 static const column attractor_columns[] = {
-    {.name = "found_period", INTEGER, .long_name = "period of the attractor; 0: all without one", SOURCE},
-    {.name = "found_tasks", INTEGER, .long_name = "number of starts that come to it", SOURCE},
-    {.name = "found_first", INTEGER, .long_name = "first task that does", SOURCE},
+    {.name = "found_period",
+     INTEGER(basin_attractor, period),
+     .long_name = "period of the attractor; 0: all without one",
+     SOURCE},
+    {.name = "found_tasks", INTEGER(basin_attractor, tasks), .long_name = "number of starts that come to it", SOURCE},
+    {.name = "found_first", INTEGER(basin_attractor, first), .long_name = "first task that does", SOURCE},
     {.name = "found_lowest",
-     .type = COLUMN_F64,
-     .units = "1",
+     NUMBERS(basin_attractor, lowest),
      .axes = {"coordinate"},
      .long_name = "state of it with the smallest observed number; of the first task",
      SOURCE},
@@ -52,50 +62,53 @@ static bool is_near(const double *a, const double *b, size_t size) {
   return apart <= same * largest;
 }
 
+static unsigned char *attractor_at(const sorting *k, uint64_t i, basin_attractor *values) {
+  unsigned char *row = k->found.bytes + i * k->attractors.row_bytes;
+  row_load(&k->attractors, row, values);
+  return row;
+}
+
 /* Index of the attractor of a task, the number of those found where it is a new one. */
-static uint64_t find(const sorting *k, int64_t period, const double *lowest) {
-  const column *known = table_column(&k->attractors, "found_period");
+static uint64_t find(const sorting *k, const diagram_row *of) {
   uint64_t i = 0;
   for (; i < k->found.count; i++) {
-    unsigned char *row = k->found.bytes + i * k->attractors.row_bytes;
-    if (row_integer(row, known) == period &&
-        (period == 0 || is_near(lowest, row_numbers(row, table_column(&k->attractors, "found_lowest")), k->size)))
+    basin_attractor known = {0};
+    attractor_at(k, i, &known);
+    if (known.period == of->attractor_period && (known.period == 0 || is_near(of->lowest, known.lowest, k->size)))
       break;
   }
   return i;
 }
 
-/* @returns the new one, NULL without memory */
-static unsigned char *add_attractor(sorting *k, uint64_t task, int64_t period, const double *lowest) {
-  const table *t = &k->attractors;
+/* @returns 0, or -1 without memory */
+static int add_attractor(sorting *k, uint64_t task, const diagram_row *of) {
   unsigned char *added = records_add(&k->found);
-  if (added) {
-    row_put_integer(added, table_column(t, "found_period"), period);
-    row_put_integer(added, table_column(t, "found_first"), (long long)task);
-    row_put_numbers(added, table_column(t, "found_lowest"), lowest);
-  }
-  return added;
+  if (!added)
+    return -1;
+  row_store(&k->attractors, added,
+            &(basin_attractor){.period = of->attractor_period, .first = (long long)task, .lowest = of->lowest});
+  return 0;
 }
 
 /* @returns 0, or -1 without memory */
 static int sort_task(sorting *k, uint64_t task) {
-  const table *rows = &k->plan->rows, *t = &k->attractors;
   unsigned char *label = k->labels + task * k->tasks.row_bytes;
-  const int outcome = k->row[table_column(rows, "outcome")->offset];
-  if (outcome != RIC_ATTRACTOR_PERIODIC && outcome != RIC_ATTRACTOR_APERIODIC) {
-    row_put_integer(label, table_column(&k->tasks, "attractor"), LABEL_NONE);
+  diagram_row of = {0};
+  row_load(&k->plan->rows, k->row, &of);
+  if (of.outcome != RIC_ATTRACTOR_PERIODIC && of.outcome != RIC_ATTRACTOR_APERIODIC) {
+    row_store(&k->tasks, label, &(basin_label){LABEL_NONE});
     return 0;
   }
-  const int64_t period = row_integer(k->row, table_column(rows, "attractor_period"));
-  const double *lowest = row_numbers(k->row, table_column(rows, "lowest"));
-  const uint64_t i = find(k, period, lowest);
-  row_put_integer(label, table_column(&k->tasks, "attractor"), i < MOST_ATTRACTORS ? (long long)i : LABEL_OTHER);
+  const uint64_t i = find(k, &of);
+  row_store(&k->tasks, label, &(basin_label){i < MOST_ATTRACTORS ? (long long)i : LABEL_OTHER});
   if (i == MOST_ATTRACTORS)
     return 0;
-  if (i == k->found.count && !add_attractor(k, task, period, lowest))
+  if (i == k->found.count && add_attractor(k, task, &of) != 0)
     return -1;
-  unsigned char *of = k->found.bytes + i * t->row_bytes;
-  row_put_integer(of, table_column(t, "found_tasks"), row_integer(of, table_column(t, "found_tasks")) + 1);
+  basin_attractor found = {0};
+  unsigned char *row = attractor_at(k, i, &found);
+  found.tasks++;
+  row_store(&k->attractors, row, &found);
   return 0;
 }
 

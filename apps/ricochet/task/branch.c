@@ -83,13 +83,13 @@ static ric_status follow(worker *w, const kind_plan *plan, records *tails, branc
 }
 
 static void fill_row(const branch_result *result, const table *t, unsigned char *row) {
-  memset(row, 0, t->row_bytes);
-  row_put_word(row, table_column(t, "outcome"), result->outcome);
-  row_put_text(row, table_column(t, "reason"), result->reason);
-  row_put_integer(row, table_column(t, "points"), (long long)result->points);
-  row_put_integer(row, table_column(t, "segments"), (long long)result->segments);
-  row_put_integer(row, table_column(t, "iterations"), (long long)result->iterations);
-  row_put_integer(row, table_column(t, "jacobians"), (long long)result->jacobians);
+  row_fill(t, row,
+           &(branch_row){.outcome = result->outcome,
+                         .reason = result->reason,
+                         .points = (long long)result->points,
+                         .segments = (long long)result->segments,
+                         .iterations = (long long)result->iterations,
+                         .jacobians = (long long)result->jacobians});
 }
 
 static int branch_evaluate(worker *w, const kind_plan *plan, task_range tasks, unsigned char *row, records *tails) {

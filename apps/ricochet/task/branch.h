@@ -35,21 +35,58 @@ typedef enum branch_origin {
 
 enum { BRANCH_REASON_BYTES = 256 };
 
+/** A row: how the first segment ended, and what all of them took. */
+typedef struct branch_row {
+  int outcome;
+  const char *reason;
+  long long points, segments, iterations, jacobians;
+} branch_row;
+
+/** Records of the tails: the members that their columns name. Histories and multipliers are filled in their places. */
+typedef struct branch_point {
+  long long segment;
+  double parameter;
+  int outcome;
+  double energy, period, amplitude, multiplier_max;
+  int stable;
+  double clearance, arclength;
+  long long iterations;
+  double residual;
+  const double *q, *v;
+  double *history_q, *history_v;
+  ric_complex *multipliers;
+} branch_point;
+
+typedef struct branch_special {
+  int kind;
+  long long segment;
+  double parameter;
+  long long point, obstacle, particle;
+  double time;
+  long long order;
+  double period, energy, amplitude, clearance, multiplier_max, arclength;
+  const double *q, *v;
+} branch_special;
+
+typedef struct branch_impact {
+  long long point, special;
+  double time;
+  long long particle;
+  int side;
+  double gap_rate, impulse;
+} branch_impact;
+
+typedef struct branch_segment {
+  int origin;
+  long long special;
+  int outcome;
+  const char *reason;
+  long long impacts, missed;
+} branch_segment;
+
 /** Lays out the row and the tails.
  *  @param followed  name of the parameter, borrowed; the columns of its values bear it
  *  @param traced  that of the second one, borrowed; NULL without curves */
 void branch_lay_out(const study_values *v, const char *followed, const char *traced, kind_plan *plan);
-
-/** Writes a point of a segment, or a special one, into its record.
- *  @param value  of the parameter
- *  @param amplitude  ric_shooting_amplitude */
-void branch_put_point(const table *t, const ric_family_point *point, double value, double amplitude, size_t segment,
-                      unsigned char *record);
-/** @param before  number of points of the task up to it; @param particle  that it concerns, -1 for none */
-void branch_put_special(const table *t, const ric_family_point *point, double value, double amplitude, size_t segment,
-                        uint64_t before, long long particle, unsigned char *record);
-
-/** Writes what is of this kind alone of a point of a curve into its record (curve_trace.h). */
-void branch_put_curve_point(const table *t, const ric_family_curve_point *point, unsigned char *record);
 
 #endif

@@ -21,11 +21,9 @@ bool branch_trace_wanted(const branch_family *b, ric_family_kind what) {
 
 static int add_point(const ric_family_curve_point *point, void *user) {
   curve_trace *t = user;
-  unsigned char *record = curve_trace_add(t, point->parameter, point->second, point->orbit->period);
-  if (!record)
-    return 1;
-  branch_put_curve_point(t->layout, point, record);
-  return 0;
+  branch_curve_point found = {
+      .energy = point->orbit->energy, .outcome = (int)point->orbit->outcome, .iterations = point->iterations};
+  return curve_trace_add(t, point->parameter, point->second, point->orbit->period, &found.common);
 }
 
 static ric_status follow(curve_trace *t, const ric_curve_options *options, void *user, ric_curve_run *run,

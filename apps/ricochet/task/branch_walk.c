@@ -57,19 +57,19 @@ static unsigned char *add_record(walk *w, size_t which) {
 
 /* The impacts of a motion; with its first state they say all of it. @param at, special  -1: not that */
 static void add_impacts(walk *w, const ric_orbit *o, long long at, long long special) {
-  const table *t = &w->plan->tails[BRANCH_IMPACTS].records;
   for (size_t k = 0; k < o->impacts; k++) {
     unsigned char *record = add_record(w, BRANCH_IMPACTS);
     if (!record)
       return;
     const ric_obstacle *hit = &w->b->model.obstacles[o->impact_obstacle[k]];
-    row_put_integer(record, table_column(t, "impact_point"), at);
-    row_put_integer(record, table_column(t, "impact_special"), special);
-    row_put_number(record, table_column(t, "impact_time"), o->impact_time[k]);
-    row_put_integer(record, table_column(t, "impact_particle"), (long long)hit->coordinate);
-    row_put_word(record, table_column(t, "impact_side"), hit->side > 0 ? 0 : 1);
-    row_put_number(record, table_column(t, "impact_gap_rate"), o->gap_rate[k]);
-    row_put_number(record, table_column(t, "impact_impulse"), o->impulse[k]);
+    row_store(&w->plan->tails[BRANCH_IMPACTS].records, record,
+              &(branch_impact){.point = at,
+                               .special = special,
+                               .time = o->impact_time[k],
+                               .particle = (long long)hit->coordinate,
+                               .side = hit->side > 0 ? 0 : 1,
+                               .gap_rate = o->gap_rate[k],
+                               .impulse = o->impulse[k]});
   }
 }
 
@@ -84,39 +84,77 @@ static double amplitude(walk *w, const ric_family_point *point) {
 }
 
 /* States over the period, in their places in the record; NaN where the motion cannot be run once more. */
-static void put_history(walk *w, const ric_family_point *point, unsigned char *record) {
-  const table *t = &w->plan->tails[BRANCH_POINTS].records;
-  const column *q = table_column(t, "point_history_q"), *v = table_column(t, "point_history_v");
-  if (!q || !v)
+static void fill_history(walk *w, const ric_family_point *point, const branch_point *to) {
+  if (!to->history_q || !to->history_v)
     return;
-  const ric_status status =
-      ric_shooting_states(ric_family_shooting(w->segments[w->current].family), point->z, point->given, q->extents[0],
-                          row_numbers(record, q), row_numbers(record, v), NULL);
+  const size_t samples = (size_t)value_number(w->b->values, KEY_BRANCH_SAMPLES, 0);
+  const ric_status status = ric_shooting_states(ric_family_shooting(w->segments[w->current].family), point->z,
+                                                point->given, samples, to->history_q, to->history_v, NULL);
   if (status == RIC_ESTOPPED || status == RIC_ENOMEM)
     w->status = status;
 }
 
+/* All of them, in their places in the record; NaN where they are not known. */
+static void fill_multipliers(const walk *w, const ric_multipliers *found, ric_complex *to) {
+  for (size_t i = 0; to && i < 2 * w->b->model.lattice.particles; i++)
+    to[i] = found && i < found->count ? found->mu[i] : (ric_complex){NAN, NAN};
+}
+
 static void add_point(walk *w, const ric_family_point *point) {
+  const table *t = &w->plan->tails[BRANCH_POINTS].records;
+  const ric_orbit *o = point->orbit;
+  const ric_multipliers *m = point->multipliers;
+  branch_point found = {0};
   unsigned char *record = add_record(w, BRANCH_POINTS);
   if (!record)
     return;
-  branch_put_point(&w->plan->tails[BRANCH_POINTS].records, point, branch_family_value(w->b, point->parameter),
-                   amplitude(w, point), w->current, record);
-  put_history(w, point, record);
+  row_load(t, record, &found);
+  found.segment = (long long)w->current;
+  found.parameter = branch_family_value(w->b, point->parameter);
+  found.outcome = (int)o->outcome;
+  found.energy = o->energy;
+  found.period = o->period;
+  found.amplitude = amplitude(w, point);
+  found.multiplier_max = m ? m->largest : NAN;
+  found.stable = m ? (int)m->stable : (int)RIC_STABILITY_UNKNOWN;
+  found.clearance = o->clearance;
+  found.arclength = point->arclength;
+  found.iterations = point->iterations;
+  found.residual = o->residual;
+  found.q = o->q;
+  found.v = o->v;
+  fill_multipliers(w, m, found.multipliers);
+  fill_history(w, point, &found);
+  row_store(t, record, &found);
   if (w->states)
-    add_impacts(w, point->orbit, (long long)w->points, -1);
+    add_impacts(w, o, (long long)w->points, -1);
   w->points++;
 }
 
 static void add_special(walk *w, const ric_family_point *point) {
+  const ric_orbit *o = point->orbit;
   const bool any = point->obstacle < w->b->model.obstacle_count;
   unsigned char *record = add_record(w, BRANCH_SPECIAL);
   if (!record)
     return;
-  branch_put_special(&w->plan->tails[BRANCH_SPECIAL].records, point, branch_family_value(w->b, point->parameter),
-                     amplitude(w, point), w->current, w->points,
-                     any ? (long long)w->b->model.obstacles[point->obstacle].coordinate : -1, record);
-  add_impacts(w, point->orbit, -1, (long long)w->specials);
+  const branch_special found = {.kind = (int)point->kind,
+                                .segment = (long long)w->current,
+                                .parameter = branch_family_value(w->b, point->parameter),
+                                .point = (long long)w->points - 1,
+                                .obstacle = any ? (long long)point->obstacle : -1,
+                                .particle = any ? (long long)w->b->model.obstacles[point->obstacle].coordinate : -1,
+                                .time = point->time,
+                                .order = point->order,
+                                .period = o->period,
+                                .energy = o->energy,
+                                .amplitude = amplitude(w, point),
+                                .clearance = o->clearance,
+                                .multiplier_max = point->multipliers ? point->multipliers->largest : NAN,
+                                .arclength = point->arclength,
+                                .q = o->q,
+                                .v = o->v};
+  row_store(&w->plan->tails[BRANCH_SPECIAL].records, record, &found);
+  add_impacts(w, o, -1, (long long)w->specials);
   w->specials++;
 }
 
@@ -233,17 +271,17 @@ static int see(const ric_family_point *point, void *user) {
 /* --- segments --- */
 
 static void put_segment(walk *w, const segment *s, int outcome, const char *reason, size_t missed) {
-  const table *t = &w->plan->tails[BRANCH_SEGMENTS].records;
   unsigned char *record = add_record(w, BRANCH_SEGMENTS);
   if (!record)
     return;
-  row_put_word(record, table_column(t, "segment_origin"), (int)s->origin);
-  row_put_integer(record, table_column(t, "segment_special"), s->special);
-  row_put_word(record, table_column(t, "segment_outcome"), outcome);
-  row_put_text(record, table_column(t, "segment_reason"), reason);
-  row_put_integer(record, table_column(t, "segment_impacts"),
-                  s->family ? (long long)ric_shooting_impacts(ric_family_shooting(s->family)) : 0);
-  row_put_integer(record, table_column(t, "segment_missed"), (long long)missed);
+  row_store(
+      &w->plan->tails[BRANCH_SEGMENTS].records, record,
+      &(branch_segment){.origin = (int)s->origin,
+                        .special = s->special,
+                        .outcome = outcome,
+                        .reason = reason,
+                        .impacts = s->family ? (long long)ric_shooting_impacts(ric_family_shooting(s->family)) : 0,
+                        .missed = (long long)missed});
 }
 
 ric_status branch_put_unborn(const kind_plan *plan, records *tails, int outcome, const char *reason) {

@@ -35,59 +35,54 @@ double comparison_distance(double *a, double *b, size_t count) {
 /* --- the row ------------------------------------------------------------------------------------------------------ */
 
 /* Numbers that are not known. */
-static void put_nothing(const table *rows, unsigned char *row) {
-  static const char *const names[] = {"parameter", "d", "map_impacts", "map_lyapunov", "distance"};
-  const column *values = table_column(rows, "map_values");
-  for (size_t i = 0; i < sizeof names / sizeof *names; i++)
-    row_put_number(row, table_column(rows, names[i]), NAN);
-  for (size_t i = 0; values && i < column_values(values); i++)
-    row_numbers(row, values)[i] = NAN;
+static void put_nothing(const iterated *it, diagram_row *row) {
+  row->parameter = row->d = row->map_impacts = row->map_lyapunov = row->distance = NAN;
+  for (size_t i = 0; row->map_values && i < it->options.keep; i++)
+    row->map_values[i] = NAN;
 }
 
 /* Both sets are copied: the row keeps the order in which the iterates came. */
-static ric_status put_distance(const table *rows, unsigned char *row, size_t keep, ric_error *error) {
+static ric_status put_distance(diagram_row *row, size_t keep, ric_error *error) {
   double *both = calloc(2 * keep + 1, sizeof *both);
   if (!both)
     return ric_fail(error, RIC_ENOMEM, "no memory for a comparison");
-  memcpy(both, row_numbers(row, table_column(rows, "values")), keep * sizeof *both);
-  memcpy(both + keep, row_numbers(row, table_column(rows, "map_values")), keep * sizeof *both);
-  row_put_number(row, table_column(rows, "distance"), comparison_distance(both, both + keep, keep));
+  memcpy(both, row->values, keep * sizeof *both);
+  memcpy(both + keep, row->map_values, keep * sizeof *both);
+  row->distance = comparison_distance(both, both + keep, keep);
   free(both);
   return RIC_OK;
 }
 
-static void put_map(const iterated *it, const table *rows, unsigned char *row, const ric_attractor *a, double origin) {
-  row_put_number(row, table_column(rows, "parameter"), beyond_parameter(it->beyond, it->values));
-  row_put_number(row, table_column(rows, "d"), beyond_d(it->beyond, it->values));
-  row_put_integer(row, table_column(rows, "map_period"), (long long)a->period);
-  row_put_number(row, table_column(rows, "map_impacts"), a->impacts);
-  if (table_column(rows, "map_lyapunov"))
-    row_put_number(row, table_column(rows, "map_lyapunov"), a->exponents[0]);
+static void put_map(const iterated *it, diagram_row *row, const ric_attractor *a, double origin) {
+  row->parameter = beyond_parameter(it->beyond, it->values);
+  row->d = beyond_d(it->beyond, it->values);
+  row->map_period = (long long)a->period;
+  row->map_impacts = a->impacts;
+  row->map_lyapunov = a->exponents[0];
   for (size_t i = 0; a->values && i < it->options.keep; i++)
     a->values[i] += origin;
 }
 
-static ric_status run(iterated *it, const table *rows, unsigned char *row, double *z, double *x, double *exponents,
-                      ric_error *error) {
-  ric_attractor a = {.z = z, .exponents = exponents, .values = row_numbers(row, table_column(rows, "map_values"))};
+static ric_status run(iterated *it, diagram_row *row, double *z, double *x, double *exponents, ric_error *error) {
+  ric_attractor a = {.z = z, .exponents = exponents, .values = row->map_values};
   RIC_TRY(beyond_find(it->beyond, it->values, error));
   RIC_TRY(beyond_motion(it->beyond, it->values, beyond_parameter(it->beyond, it->values), x, error));
   RIC_TRY(beyond_run(it->beyond, it->values, &it->options, &a, error));
-  put_map(it, rows, row, &a, x[it->options.observe]);
-  return it->options.keep > 0 ? put_distance(rows, row, it->options.keep, error) : RIC_OK;
+  put_map(it, row, &a, x[it->options.observe]);
+  return it->options.keep > 0 ? put_distance(row, it->options.keep, error) : RIC_OK;
 }
 
-ric_status comparison_put(iterated *it, const table *rows, unsigned char *row) {
-  ric_error error = {.message = "no memory for a comparison"};
-  double *z = calloc(2 * it->size + it->options.exponents, sizeof *z);
-  ric_status status = z ? run(it, rows, row, z, z + it->size, z + 2 * it->size, &error) : RIC_ENOMEM;
+ric_status comparison_put(iterated *it, diagram_row *row, ric_error *error) {
+  double *z = calloc(2 * it->size + it->options.exponents + 1, sizeof *z);
+  ric_status status = z ? run(it, row, z, z + it->size, z + 2 * it->size, error)
+                        : ric_fail(error, RIC_ENOMEM, "no memory for a comparison");
   free(z);
   if (status == RIC_ESTOPPED)
     return status;
   if (status != RIC_OK) {
-    put_nothing(rows, row);
-    if (row[table_column(rows, "reason")->offset] == 0) /* the motion's own comes first */
-      row_put_text(row, table_column(rows, "reason"), error.message);
+    put_nothing(it, row);
+    if (!row->reason[0]) /* the motion's own comes first */
+      row->reason = error->message;
   }
   return RIC_OK;
 }

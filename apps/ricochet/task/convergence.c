@@ -20,8 +20,7 @@ static int keep(convergence *c, double time, const double *exponents) {
     c->no_memory = 1;
     return 1;
   }
-  row_put_number(record, table_column(c->layout, "lyapunov_time"), time);
-  row_put_numbers(record, table_column(c->layout, "lyapunov_history"), exponents);
+  row_store(c->layout, record, &(lyapunov_record){.time = time, .history = exponents});
   c->kept = time;
   return 0;
 }

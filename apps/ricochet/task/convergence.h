@@ -8,6 +8,12 @@
 #include "records.h"
 #include "table.h"
 
+/** A record: the exponents by a time. */
+typedef struct lyapunov_record {
+  double time;
+  const double *history;
+} lyapunov_record;
+
 /** The records of one task, of which those are kept that are a twentieth later than the one before, and the last. */
 typedef struct convergence {
   const table *layout; /* with the columns lyapunov_time and lyapunov_history */

@@ -7,45 +7,30 @@
 
 static const column end_columns[] = {
     {.name = "curve_end_special",
-     .type = COLUMN_I64,
-     .units = "1",
+     INTEGER(curve_end, special),
      .long_name = "special point of the task that the curve goes through",
      CURVE},
-    {.name = "curve_end_part", .type = COLUMN_I64, .units = "1", .long_name = "part of the curve", CURVE},
-    {.name = "curve_end_outcome",
-     .type = COLUMN_ENUM,
-     .names = branch_outcome_names,
-     .name_count = BRANCH_OUTCOMES,
-     .units = "1",
-     .long_name = "how it ended",
-     CURVE},
+    {.name = "curve_end_part", INTEGER(curve_end, part), .long_name = "part of the curve", CURVE},
+    {.name = "curve_end_outcome", WORD(curve_end, outcome, branch_outcome_names), .long_name = "how it ended", CURVE},
     {.name = "curve_end_reason",
-     .type = COLUMN_TEXT,
-     .text_bytes = BRANCH_REASON_BYTES,
-     .units = "1",
+     TEXT(curve_end, reason, BRANCH_REASON_BYTES),
      .long_name = "why; empty when the outcome speaks for itself",
      CURVE},
-    {.name = "curve_end_points",
-     .type = COLUMN_I64,
-     .units = "1",
-     .long_name = "number of its points",
-     .source = "count"},
+    {.name = "curve_end_points", INTEGER(curve_end, points), .long_name = "number of its points", .source = "count"},
 };
 
 static const column point_columns[] = {
     {.name = "curve_special",
-     .type = COLUMN_I64,
-     .units = "1",
+     INTEGER(curve_point, special),
      .long_name = "special point of the task that the curve goes through",
      CURVE},
     {.name = "curve_part",
-     .type = COLUMN_I64,
-     .units = "1",
+     INTEGER(curve_point, part),
      .long_name = "0: from there towards larger values of the second parameter, 1: towards smaller ones",
      CURVE},
-    {.name = "curve_parameter", .type = COLUMN_F64, .units = "1", .long_name = "the key that is followed", CURVE},
-    {.name = "curve_second", .type = COLUMN_F64, .units = "1", .long_name = "the second key", CURVE},
-    {.name = "curve_period", .type = COLUMN_F64, .units = "1", .long_name = "period", CURVE},
+    {.name = "curve_parameter", NUMBER(curve_point, parameter), .long_name = "the key that is followed", CURVE},
+    {.name = "curve_second", NUMBER(curve_point, second), .long_name = "the second key", CURVE},
+    {.name = "curve_period", NUMBER(curve_point, period), .long_name = "period", CURVE},
 };
 
 #define COUNT(columns) (sizeof(columns) / sizeof *(columns))
@@ -76,33 +61,29 @@ static bool leaves(curve_trace *t, double value) {
   return below || above;
 }
 
-unsigned char *curve_trace_add(curve_trace *t, double parameter, double second, double period) {
+int curve_trace_add(curve_trace *t, double parameter, double second, double period, curve_point *point) {
   const double value = branch_family_value(t->b, parameter);
   if (t->count > 0 && leaves(t, value))
-    return NULL;
+    return 1;
   unsigned char *record = records_add(t->points);
   if (!record) {
     t->status = RIC_ENOMEM;
-    return NULL;
+    return 1;
   }
-  row_put_integer(record, table_column(t->layout, "curve_special"), t->special);
-  row_put_integer(record, table_column(t->layout, "curve_part"), t->part);
-  row_put_number(record, table_column(t->layout, "curve_parameter"), value);
-  row_put_number(record, table_column(t->layout, "curve_second"), second);
-  row_put_number(record, table_column(t->layout, "curve_period"), period);
+  *point = (curve_point){t->special, t->part, value, second, period};
+  row_store(t->layout, record, point);
   t->count++;
-  return record;
+  return 0;
 }
 
 static ric_status add_end(const curve_trace *t, int outcome, const char *reason) {
   unsigned char *record = records_add(t->ends);
   if (!record)
     return RIC_ENOMEM;
-  row_put_integer(record, table_column(t->end_layout, "curve_end_special"), t->special);
-  row_put_integer(record, table_column(t->end_layout, "curve_end_part"), t->part);
-  row_put_word(record, table_column(t->end_layout, "curve_end_outcome"), outcome);
-  row_put_text(record, table_column(t->end_layout, "curve_end_reason"), reason);
-  row_put_integer(record, table_column(t->end_layout, "curve_end_points"), (long long)t->count);
+  row_store(
+      t->end_layout, record,
+      &(curve_end){
+          .special = t->special, .part = t->part, .outcome = outcome, .reason = reason, .points = (long long)t->count});
   return RIC_OK;
 }
 

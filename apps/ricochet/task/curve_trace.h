@@ -6,6 +6,39 @@
 #include "branch.h"
 #include "branch_family.h"
 
+/** A point of a curve. What a kind has besides stands behind it in the kind's own struct. */
+typedef struct curve_point {
+  long long special, part;
+  double parameter, second, period;
+} curve_point;
+
+/** A point of a curve of a branch. */
+typedef struct branch_curve_point {
+  curve_point common;
+  double energy;
+  int outcome;
+  long long iterations;
+} branch_curve_point;
+
+/** A point of a curve of grazing points. */
+typedef struct grazing_curve_point {
+  curve_point common;
+  double phase, A_g;
+  int verdict;
+  long long first_negative;
+  ric_complex multiplier;
+  const double *coefficient;
+  long long change;
+} grazing_curve_point;
+
+/** The end of a curve. */
+typedef struct curve_end {
+  long long special, part;
+  int outcome;
+  const char *reason;
+  long long points;
+} curve_end;
+
 /** A curve on its way. The caller sets what is above the line. */
 typedef struct curve_trace {
   const branch_family *b;
@@ -34,10 +67,11 @@ typedef struct curve_tables {
 /** Lays out points and ends. */
 void curve_trace_lay_out(const curve_tables *tables, tail *points, tail *ends);
 
-/** Adds a point, with its special point, its part, its parameters and its period.
- *  @param parameter  the family's own  @param second  parameter
- *  @returns its record; NULL to end the way: the parameter leaves its bounds, or there is no memory */
-unsigned char *curve_trace_add(curve_trace *t, double parameter, double second, double period);
+/** Adds a point, unless the first parameter leaves its bounds or there is no memory.
+ *  @param point  the kind's struct of a point, its own members set; those of curve_point are set here, from the
+ *                parameter of the family, the second one, and the period
+ *  @returns 0, or 1 when the curve ends here */
+int curve_trace_add(curve_trace *t, double parameter, double second, double period, curve_point *point);
 
 /** Follows the library's curve; `run` as it sets it. */
 typedef ric_status (*curve_way)(curve_trace *t, const ric_curve_options *options, void *user, ric_curve_run *run,

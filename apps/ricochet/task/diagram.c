@@ -13,6 +13,7 @@ struct worker {
   bool follows;              /* every task of a line starts where the one before it has ended */
   size_t exponents;          /* numbers of them in a task */
   ric_attractor *attractors; /* [slots] */
+  diagram_row *rows;         /* [slots] of them */
   double *starts;            /* [slots][size] */
   double *before;            /* [size] where the last task has ended */
   double *found;             /* [slots][exponents] */
@@ -37,11 +38,11 @@ static int diagram_plan(const study *s, kind_plan *plan, message *why) {
     return refuse(why, EXIT_RUN, "%s: no memory for the values of a task", study_name(s));
   *plan = (kind_plan){.outcome = "outcome"};
   plan->whole = value_flag(v, KEY_ITERATE_FOLLOW);
-  plan->batch = plan->whole ? line_of(s) : slots_of(s, diagram_row_bytes(s, v));
-  plan->memory = iterated_bytes(s, v) + (double)plan->batch * diagram_row_bytes(s, v);
+  diagram_lay_out(s, v, &plan->rows);
+  const double row_bytes = table_row_bytes(&plan->rows);
+  plan->batch = plan->whole ? line_of(s) : slots_of(s, row_bytes);
+  plan->memory = iterated_bytes(s, v) + (double)plan->batch * row_bytes;
   const int code = machine_refuse_size(s, "a task", plan->memory, why);
-  if (!code)
-    diagram_lay_out(s, v, &plan->rows);
   study_values_destroy(&v);
   return code;
 }
@@ -51,6 +52,7 @@ static void diagram_close(worker **w) {
     return;
   iterated_clear(&(*w)->it);
   free((*w)->attractors);
+  free((*w)->rows);
   free((*w)->starts);
   free((*w)->before);
   free((*w)->found);
@@ -63,10 +65,11 @@ static int allocate(worker *w, const study *s, message *why) {
   w->follows = value_flag(w->it.values, KEY_ITERATE_FOLLOW);
   w->exponents = (size_t)value_number(w->it.values, KEY_ITERATE_EXPONENTS, 0);
   w->attractors = calloc(slots, sizeof *w->attractors);
+  w->rows = calloc(slots, sizeof *w->rows);
   w->starts = calloc(slots * w->it.size, sizeof *w->starts);
   w->before = calloc(w->it.size, sizeof *w->before);
   w->found = calloc(slots * w->exponents, sizeof *w->found);
-  if (w->attractors && w->starts && w->before && w->found)
+  if (w->attractors && w->rows && w->starts && w->before && w->found)
     return 0;
   return refuse(why, EXIT_RUN, "%s: no memory for a task", study_name(s));
 }
@@ -86,17 +89,22 @@ static int diagram_open(const study *s, ric_poll poll, worker **out, message *wh
 /* --- tasks -------------------------------------------------------------------------------------------------------- */
 
 /* Takes a task into a slot, with its own start. */
-static void take(worker *w, const table *rows, uint64_t task, size_t slot, unsigned char *row) {
+static void take(worker *w, const table *layout, uint64_t task, size_t slot, unsigned char *row) {
   double *start = w->starts + slot * w->it.size;
   study_values_at(w->it.values, task);
   iterated_take(&w->it, slot, start);
-  w->attractors[slot] = diagram_begin_row(rows, row, start, w->found + slot * w->exponents);
+  w->attractors[slot] = (ric_attractor){.z = start, .exponents = w->found + slot * w->exponents};
+  w->rows[slot] = diagram_begin_row(layout, row, &w->attractors[slot]);
 }
 
 /* A task that has been run, into its row. */
 static ric_status put(worker *w, const table *rows, size_t slot, unsigned char *row) {
-  diagram_put_row(rows, row, &w->attractors[slot]);
-  return w->it.beyond ? comparison_put(&w->it, rows, row) : RIC_OK;
+  diagram_row *found = &w->rows[slot];
+  diagram_put_row(found, &w->attractors[slot]);
+  ric_error error = {0};
+  const ric_status status = w->it.beyond ? comparison_put(&w->it, found, &error) : RIC_OK;
+  row_store(rows, row, found);
+  return status;
 }
 
 /* Tasks that do not know of one another. */

@@ -3,10 +3,8 @@
 
 #include "diagram.h"
 
-#define NUMBER  .type = COLUMN_F64, .units = "1"
-#define INTEGER .type = COLUMN_I64, .units = "1"
-#define SOURCE  .source = "[FN97] section 6"
-#define MAP     .source = "[FN97] (5.11)"
+#define SOURCE .source = "[FN97] section 6"
+#define MAP    .source = "[FN97] (5.11)"
 
 static const char *const outcome_names[RIC_ATTRACTOR_KINDS] = {
 #define X(name, text) text,
@@ -16,28 +14,35 @@ static const char *const outcome_names[RIC_ATTRACTOR_KINDS] = {
 
 /* The columns of both kinds, in the order of the schema page. */
 static const column columns[] = {
-    {.name = "outcome",
-     .type = COLUMN_ENUM,
-     .names = outcome_names,
-     .name_count = RIC_ATTRACTOR_KINDS,
-     .units = "1",
-     .long_name = "what the iterates come to",
-     SOURCE},
+    {.name = "outcome", WORD(diagram_row, outcome, outcome_names), .long_name = "what the iterates come to", SOURCE},
     {.name = "reason",
-     .type = COLUMN_TEXT,
-     .text_bytes = DIAGRAM_REASON_BYTES,
-     .units = "1",
+     TEXT(diagram_row, reason, DIAGRAM_REASON_BYTES),
      .long_name = "why they come to nothing; else empty",
      SOURCE},
-    {.name = "attractor_period", INTEGER, .long_name = "period of the attractor, 0: none up to period_limit", SOURCE},
-    {.name = "impacts", NUMBER, .long_name = "impacts per iterate, on the average", SOURCE},
-    {.name = "lyapunov", NUMBER, .long_name = "largest Lyapunov exponent per iterate", SOURCE},
-    {.name = "exponents", NUMBER, .axes = {"exponent"}, .long_name = "Lyapunov exponents per iterate", SOURCE},
-    {.name = "values", NUMBER, .axes = {"iterate"}, SOURCE},
-    {.name = "state", NUMBER, .axes = {"iterate", "coordinate"}, .long_name = "kept iterates", SOURCE},
-    {.name = "end", NUMBER, .axes = {"coordinate"}, .long_name = "state after all measured iterates", SOURCE},
+    {.name = "attractor_period",
+     INTEGER(diagram_row, attractor_period),
+     .long_name = "period of the attractor, 0: none up to period_limit",
+     SOURCE},
+    {.name = "impacts", NUMBER(diagram_row, impacts), .long_name = "impacts per iterate, on the average", SOURCE},
+    {.name = "lyapunov", NUMBER(diagram_row, lyapunov), .long_name = "largest Lyapunov exponent per iterate", SOURCE},
+    {.name = "exponents",
+     NUMBERS(diagram_row, exponents),
+     .axes = {"exponent"},
+     .long_name = "Lyapunov exponents per iterate",
+     SOURCE},
+    {.name = "values", NUMBERS(diagram_row, values), .axes = {"iterate"}, SOURCE},
+    {.name = "state",
+     NUMBERS(diagram_row, state),
+     .axes = {"iterate", "coordinate"},
+     .long_name = "kept iterates",
+     SOURCE},
+    {.name = "end",
+     NUMBERS(diagram_row, end),
+     .axes = {"coordinate"},
+     .long_name = "state after all measured iterates",
+     SOURCE},
     {.name = "lowest",
-     NUMBER,
+     NUMBERS(diagram_row, lowest),
      .axes = {"coordinate"},
      .long_name = "state on the attractor with the smallest observed number",
      SOURCE},
@@ -45,18 +50,27 @@ static const column columns[] = {
 
 /* Of diagrams beyond grazing. */
 static const column beyond_columns[] = {
-    {.name = "parameter", NUMBER, .long_name = "branch.parameter", SOURCE},
-    {.name = "d", NUMBER, .long_name = "how far the periodic motion would pass the obstacle, to first order", SOURCE},
-    {.name = "map_period", INTEGER, .long_name = "period of the attractor of the map, 0: none", MAP},
-    {.name = "map_impacts", NUMBER, .long_name = "impacts per iterate of the map", MAP},
-    {.name = "map_lyapunov", NUMBER, .long_name = "its largest Lyapunov exponent per iterate", MAP},
+    {.name = "parameter", NUMBER(diagram_row, parameter), .long_name = "branch.parameter", SOURCE},
+    {.name = "d",
+     NUMBER(diagram_row, d),
+     .long_name = "how far the periodic motion would pass the obstacle, to first order",
+     SOURCE},
+    {.name = "map_period",
+     INTEGER(diagram_row, map_period),
+     .long_name = "period of the attractor of the map, 0: none",
+     MAP},
+    {.name = "map_impacts", NUMBER(diagram_row, map_impacts), .long_name = "impacts per iterate of the map", MAP},
+    {.name = "map_lyapunov",
+     NUMBER(diagram_row, map_lyapunov),
+     .long_name = "its largest Lyapunov exponent per iterate",
+     MAP},
     {.name = "map_values",
-     NUMBER,
+     NUMBERS(diagram_row, map_values),
      .axes = {"iterate"},
      .long_name = "its iterates as values of the motion: beside the periodic one",
      MAP},
     {.name = "distance",
-     NUMBER,
+     NUMBER(diagram_row, distance),
      .long_name = "between the values of the motion and of the map, over the extent of the latter",
      MAP},
 };
@@ -97,28 +111,22 @@ void diagram_lay_out(const study *s, const study_values *v, table *rows) {
   table_lay_out(rows);
 }
 
-double diagram_row_bytes(const study *s, const study_values *v) {
-  const double keep = (double)kept_of(s, v), size = (double)study_state_size(s);
-  return 8 * (keep * (2 + (value_flag(v, KEY_ITERATE_STATES) ? size : 0)) + (double)exponents_of(v) + 2 * size + 16) +
-         DIAGRAM_REASON_BYTES;
-}
-
-ric_attractor diagram_begin_row(const table *rows, unsigned char *row, double *z, double *exponents) {
+diagram_row diagram_begin_row(const table *rows, unsigned char *row, ric_attractor *a) {
+  diagram_row values = {0};
   memset(row, 0, rows->row_bytes);
-  return (ric_attractor){.z = z,
-                         .values = row_numbers(row, table_column(rows, "values")),
-                         .states = row_numbers(row, table_column(rows, "state")),
-                         .lowest = row_numbers(row, table_column(rows, "lowest")),
-                         .exponents = exponents};
+  row_load(rows, row, &values);
+  a->values = values.values;
+  a->states = values.state;
+  a->lowest = values.lowest;
+  return values;
 }
 
-void diagram_put_row(const table *rows, unsigned char *row, const ric_attractor *a) {
-  row_put_word(row, table_column(rows, "outcome"), (int)a->kind);
-  row_put_text(row, table_column(rows, "reason"), a->reason);
-  row_put_integer(row, table_column(rows, "attractor_period"), (long long)a->period);
-  row_put_number(row, table_column(rows, "impacts"), a->impacts);
-  row_put_numbers(row, table_column(rows, "end"), a->z);
-  if (table_column(rows, "lyapunov"))
-    row_put_number(row, table_column(rows, "lyapunov"), a->exponents[0]);
-  row_put_numbers(row, table_column(rows, "exponents"), a->exponents);
+void diagram_put_row(diagram_row *row, const ric_attractor *a) {
+  row->outcome = (int)a->kind;
+  row->reason = a->reason;
+  row->attractor_period = (long long)a->period;
+  row->impacts = a->impacts;
+  row->end = a->z;
+  row->lyapunov = a->exponents[0];
+  row->exponents = a->exponents;
 }

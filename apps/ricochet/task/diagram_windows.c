@@ -42,45 +42,56 @@ typedef struct span {
   sight of;
 } span;
 
-#define NUMBER  .type = COLUMN_F64, .units = "1"
-#define INTEGER .type = COLUMN_I64, .units = "1"
-#define SOURCE  .source = "[FN97] section 6"
+#define SOURCE .source = "[FN97] section 6"
+
+/* A row: the members that its columns name. */
+typedef struct window_row {
+  long long task, tasks, period, impacts;
+  double parameter, low, high, low_outside, low_inside, high_inside, high_outside;
+  ric_complex multiplier;
+  double map_low, map_high;
+  const char *reason;
+  int low_kind, high_kind;
+} window_row;
 
 static const column columns[] = {
-    {.name = "task", INTEGER, .long_name = "task from which it was followed", SOURCE},
-    {.name = "tasks", INTEGER, .long_name = "number of tasks of the period, one after the other", SOURCE},
-    {.name = "period", INTEGER, .long_name = "period of the attractor", SOURCE},
-    {.name = "impacts", INTEGER, .long_name = "impacts in a period; -1: not located", SOURCE},
-    {.name = "parameter", NUMBER, .long_name = "value of the last sweep at the task", SOURCE},
-    {.name = "low", NUMBER, .long_name = "value at which the window begins, located on the cycle", SOURCE},
-    {.name = "high", NUMBER, .long_name = "value at which it ends, located on the cycle", SOURCE},
+    {.name = "task", INTEGER(window_row, task), .long_name = "task from which it was followed", SOURCE},
+    {.name = "tasks",
+     INTEGER(window_row, tasks),
+     .long_name = "number of tasks of the period, one after the other",
+     SOURCE},
+    {.name = "period", INTEGER(window_row, period), .long_name = "period of the attractor", SOURCE},
+    {.name = "impacts", INTEGER(window_row, impacts), .long_name = "impacts in a period; -1: not located", SOURCE},
+    {.name = "parameter", NUMBER(window_row, parameter), .long_name = "value of the last sweep at the task", SOURCE},
+    {.name = "low",
+     NUMBER(window_row, low),
+     .long_name = "value at which the window begins, located on the cycle",
+     SOURCE},
+    {.name = "high", NUMBER(window_row, high), .long_name = "value at which it ends, located on the cycle", SOURCE},
     {.name = "low_outside",
-     NUMBER,
+     NUMBER(window_row, low_outside),
      .long_name = "below the window, as the attractor says; NaN: end of the sweep",
      SOURCE},
-    {.name = "low_inside", NUMBER, .long_name = "in the window, as the attractor says", SOURCE},
-    {.name = "high_inside", NUMBER, .long_name = "in the window, as the attractor says", SOURCE},
+    {.name = "low_inside", NUMBER(window_row, low_inside), .long_name = "in the window, as the attractor says", SOURCE},
+    {.name = "high_inside",
+     NUMBER(window_row, high_inside),
+     .long_name = "in the window, as the attractor says",
+     SOURCE},
     {.name = "high_outside",
-     NUMBER,
+     NUMBER(window_row, high_outside),
      .long_name = "above the window, as the attractor says; NaN: end of the sweep",
      SOURCE},
-    {.name = "multiplier",
-     .type = COLUMN_COMPLEX,
-     .units = "1",
-     .long_name = "largest multiplier of the cycle",
-     SOURCE},
+    {.name = "multiplier", COMPLEX(window_row, multiplier), .long_name = "largest multiplier of the cycle", SOURCE},
     {.name = "map_low",
-     NUMBER,
+     NUMBER(window_row, map_low),
      .long_name = "closed form of the map, with one impact: along d exact, beyond grazing to leading order; else NaN",
      SOURCE},
     {.name = "map_high",
-     NUMBER,
+     NUMBER(window_row, map_high),
      .long_name = "closed form of the map, with one impact: along d exact, beyond grazing to leading order; else NaN",
      SOURCE},
     {.name = "reason",
-     .type = COLUMN_TEXT,
-     .text_bytes = DIAGRAM_REASON_BYTES,
-     .units = "1",
+     TEXT(window_row, reason, DIAGRAM_REASON_BYTES),
      .long_name = "why an edge is not located; empty where both are",
      SOURCE},
 };
@@ -89,30 +100,27 @@ static const column columns[] = {
 static void lay_out(table *t, const study *s) {
   size_t count;
   const char *const *names = window_edge_names(s, &count);
-  const column kinds[] = {{.name = "low_kind",
-                           .type = COLUMN_ENUM,
-                           .names = names,
-                           .name_count = count,
-                           .units = "1",
-                           .long_name = "what ends it there",
-                           SOURCE},
-                          {.name = "high_kind",
-                           .type = COLUMN_ENUM,
-                           .names = names,
-                           .name_count = count,
-                           .units = "1",
-                           .long_name = "what ends it there",
-                           SOURCE}};
+  const column edge = {
+      .type = COLUMN_ENUM, .names = names, .name_count = count, .long_name = "what ends it there", SOURCE};
+  column low = edge, high = edge;
+  low.name = "low_kind";
+  low.member = COLUMN_MEMBER(window_row, low_kind, int, unsigned);
+  high.name = "high_kind";
+  high.member = COLUMN_MEMBER(window_row, high_kind, int, unsigned);
   *t = (table){.group = "window", .row_axis = "window_row"};
   table_add(t, columns, sizeof columns / sizeof *columns, NULL, 0);
-  table_add(t, kinds, 2, NULL, 0);
+  table_add(t, &low, 1, NULL, 0);
+  table_add(t, &high, 1, NULL, 0);
   table_lay_out(t);
 }
 
 /* --- on the attractor --------------------------------------------------------------------------------------------- */
 
-static int read_row(const search *k, size_t point) {
-  return k->done->read(k->done->user, k->line + point, 1, k->row, k->why);
+static int read_row(const search *k, size_t point, diagram_row *values) {
+  const int code = k->done->read(k->done->user, k->line + point, 1, k->row, k->why);
+  if (!code)
+    row_load(&k->plan->rows, k->row, values);
+  return code;
 }
 
 /* Where periods are not measured as a whole, the rest counts for at most as many impacts as a period has. */
@@ -172,23 +180,18 @@ static void find_bounds(const search *k, double *low, double *high) {
   *high = b < 0 ? b / BEYOND : a > 0 ? b * BEYOND : b + (b - a);
 }
 
-static int64_t integer_of(const table *t, const unsigned char *row, const char *name) {
-  return row_integer(row, table_column(t, name));
-}
-
 /* Whether a window of the present line, among the first `count`, has been located around a value, with this period or a
  * part of it, and its impacts: near a flip the attractor is slow, and hides its period or returns only after two of
  * them. */
 static bool is_known(const search *k, uint64_t count, const sight *of, double value) {
-  const table *t = &k->layout;
   for (uint64_t i = count; i-- > 0;) {
-    unsigned char *row = k->found.bytes + i * t->row_bytes;
-    if ((uint64_t)integer_of(t, row, "task") < k->line)
+    window_row w = {0};
+    row_load(&k->layout, k->found.bytes + i * k->layout.row_bytes, &w);
+    if ((uint64_t)w.task < k->line)
       return false;
-    const int64_t period = integer_of(t, row, "period"), times = (int64_t)of->period / period;
-    if ((int64_t)of->period == times * period &&
-        (of->impacts < 0 || of->impacts == times * integer_of(t, row, "impacts")) &&
-        *row_numbers(row, table_column(t, "low")) < value && *row_numbers(row, table_column(t, "high")) > value)
+    const int64_t times = (int64_t)of->period / w.period;
+    if ((int64_t)of->period == times * w.period && (of->impacts < 0 || of->impacts == times * w.impacts) &&
+        w.low < value && w.high > value)
       return true;
   }
   return false;
@@ -200,8 +203,10 @@ static void drop_known(search *k, uint64_t first) {
   uint64_t kept = first;
   for (uint64_t i = first; i < k->found.count; i++) {
     unsigned char *row = k->found.bytes + i * t->row_bytes;
-    const sight of = {.period = (size_t)integer_of(t, row, "period"), .impacts = integer_of(t, row, "impacts")};
-    if (of.impacts < 0 && is_known(k, k->found.count, &of, *row_numbers(row, table_column(t, "parameter"))))
+    window_row w = {0};
+    row_load(t, row, &w);
+    const sight of = {.period = (size_t)w.period, .impacts = w.impacts};
+    if (of.impacts < 0 && is_known(k, k->found.count, &of, w.parameter))
       continue;
     memmove(k->found.bytes + kept++ * t->row_bytes, row, t->row_bytes);
   }
@@ -210,23 +215,24 @@ static void drop_known(search *k, uint64_t first) {
 
 static void put_window(const search *k, unsigned char *row, const span *w, size_t point, const window_edges *e,
                        const double *bracket) {
-  static const char *const brackets[] = {"low_outside", "low_inside", "high_inside", "high_outside"};
-  const table *t = &k->layout;
-  row_put_integer(row, table_column(t, "task"), (long long)(k->line + point));
-  row_put_integer(row, table_column(t, "tasks"), (long long)(w->last - w->first + 1));
-  row_put_integer(row, table_column(t, "period"), (long long)w->of.period);
-  row_put_integer(row, table_column(t, "impacts"), e->located ? (long long)e->impacts : -1);
-  row_put_number(row, table_column(t, "parameter"), k->values[point]);
-  row_put_number(row, table_column(t, "low"), e->low);
-  row_put_number(row, table_column(t, "high"), e->high);
-  for (size_t i = 0; i < 4; i++)
-    row_put_number(row, table_column(t, brackets[i]), bracket[i]);
-  row_put_numbers(row, table_column(t, "multiplier"), &e->multiplier.re);
-  row_put_number(row, table_column(t, "map_low"), e->map_low);
-  row_put_number(row, table_column(t, "map_high"), e->map_high);
-  row_put_text(row, table_column(t, "reason"), e->reason);
-  row_put_word(row, table_column(t, "low_kind"), e->low_kind);
-  row_put_word(row, table_column(t, "high_kind"), e->high_kind);
+  row_store(&k->layout, row,
+            &(window_row){.task = (long long)(k->line + point),
+                          .tasks = (long long)(w->last - w->first + 1),
+                          .period = (long long)w->of.period,
+                          .impacts = e->located ? (long long)e->impacts : -1,
+                          .parameter = k->values[point],
+                          .low = e->low,
+                          .high = e->high,
+                          .low_outside = bracket[0],
+                          .low_inside = bracket[1],
+                          .high_inside = bracket[2],
+                          .high_outside = bracket[3],
+                          .multiplier = e->multiplier,
+                          .map_low = e->map_low,
+                          .map_high = e->map_high,
+                          .reason = e->reason,
+                          .low_kind = e->low_kind,
+                          .high_kind = e->high_kind});
 }
 
 /* Where it begins and ends on the attractor, in the order of the columns. */
@@ -253,18 +259,18 @@ static ric_status find_bracket(search *k, const span *w, double *bracket) {
 static int add_window(search *k, const span *w) {
   const size_t point = w->first + (w->last - w->first) / 2;
   double low, high, bracket[4];
+  diagram_row of = {0};
   window_edges edges;
   if (is_known(k, k->found.count, &w->of, k->values[point]))
     return 0;
-  const int code = read_row(k, point);
+  const int code = read_row(k, point, &of);
   if (code)
     return code;
   find_bounds(k, &low, &high);
   ric_status status = find_bracket(k, w, bracket);
   study_values_at(k->it.values, k->line + point);
   if (status == RIC_OK)
-    status = window_edges_find(&k->it, w->of.period, k->values[point], low, high,
-                               row_numbers(k->row, table_column(&k->plan->rows, "end")), &edges);
+    status = window_edges_find(&k->it, w->of.period, k->values[point], low, high, of.end, &edges);
   if (status != RIC_OK)
     return refuse(k->why, EXIT_STOPPED, "%s: stopped at its windows", study_name(k->it.study));
   unsigned char *row = records_add(&k->found);
@@ -277,25 +283,22 @@ static int add_window(search *k, const span *w) {
 /* --- all of them -------------------------------------------------------------------------------------------------- */
 
 /* From where a line that is followed goes on behind a task. */
-static void put_end(search *k, size_t point) {
-  const table *rows = &k->plan->rows;
-  const int outcome = k->row[table_column(rows, "outcome")->offset];
+static void put_end(search *k, size_t point, const diagram_row *of) {
   double *end = k->ends + point * k->it.size;
-  memcpy(end, row_numbers(k->row, table_column(rows, "end")), k->it.size * sizeof *end);
-  if (outcome != RIC_ATTRACTOR_PERIODIC && outcome != RIC_ATTRACTOR_APERIODIC)
+  memcpy(end, of->end, k->it.size * sizeof *end);
+  if (of->outcome != RIC_ATTRACTOR_PERIODIC && of->outcome != RIC_ATTRACTOR_APERIODIC)
     end[0] = NAN;
 }
 
 static int read_line(search *k) {
-  const table *rows = &k->plan->rows;
   study_values_at(k->it.values, k->line);
   for (size_t i = 0; i < k->points; i++) {
-    const int code = read_row(k, i);
+    diagram_row of = {0};
+    const int code = read_row(k, i, &of);
     if (code)
       return code;
-    k->sights[i] = sight_of(k, (size_t)integer_of(rows, k->row, "attractor_period"),
-                            *row_numbers(k->row, table_column(rows, "impacts")));
-    put_end(k, i);
+    k->sights[i] = sight_of(k, (size_t)of.attractor_period, of.impacts);
+    put_end(k, i, &of);
   }
   return 0;
 }

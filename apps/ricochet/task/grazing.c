@@ -32,19 +32,19 @@ static int grazing_open(const study *s, ric_poll poll, worker **out, message *wh
 }
 
 /* Besides the row and what the family takes, matrices of the criterion and of the orbits of the map. */
-static double bytes_of(const study_values *v) {
+static double bytes_of(const study_values *v, const table *rows) {
   const double c = grazing_coordinates(v);
-  return family_task_bytes(v) + grazing_row_bytes(v) + 8 * 12 * c * c;
+  return family_task_bytes(v) + table_row_bytes(rows) + 8 * 12 * c * c;
 }
 
 static int grazing_plan(const study *s, kind_plan *plan, message *why) {
   study_values *v = study_values_create(s);
   if (!v)
     return refuse(why, EXIT_RUN, "%s: no memory for the values of a task", study_name(s));
-  *plan = (kind_plan){.outcome = "outcome", .memory = bytes_of(v)};
+  *plan = (kind_plan){.outcome = "outcome"};
+  grazing_lay_out(v, study_followed(s)->name, study_traced(s)->key == KEY_COUNT ? NULL : study_traced(s)->name, plan);
+  plan->memory = bytes_of(v, &plan->rows);
   const int code = machine_refuse_size(s, "a grazing motion", plan->memory, why);
-  if (!code)
-    grazing_lay_out(v, study_followed(s)->name, study_traced(s)->key == KEY_COUNT ? NULL : study_traced(s)->name, plan);
   study_values_destroy(&v);
   return code ? code : family_task_check(s, why);
 }
@@ -82,13 +82,23 @@ static ric_status compute(family_task *t, grazing_task *g, records *tails) {
   return status;
 }
 
+static void finish_row(grazing_task *g) {
+  g->found.outcome = (int)g->outcome;
+  g->found.reason = g->reason;
+  if (g->outcome == GRAZING_DEGENERATE) { /* what follows there is not known, and why not is */
+    g->found.verdict = RIC_GRAZING_UNDECIDED;
+    g->found.verdict_reason = g->reason;
+  }
+  row_store(&g->plan->rows, g->row, &g->found);
+}
+
 static int grazing_evaluate(worker *w, const kind_plan *plan, task_range tasks, unsigned char *row, records *tails) {
   grazing_task g = {.b = &w->task.family, .plan = plan, .row = row, .outcome = GRAZING_FAILED};
   uint64_t before[GRAZING_TAILS];
   for (size_t k = 0; k < plan->tail_count; k++)
     before[k] = tails[k].count;
   study_values_at(w->task.values, tasks.first);
-  grazing_clear_row(&plan->rows, row);
+  g.found = grazing_clear_row(&plan->rows, row);
   const ric_status status = compute(&w->task, &g, tails);
   branch_family_close(&w->task.family);
   if (status == RIC_ESTOPPED)
@@ -96,15 +106,10 @@ static int grazing_evaluate(worker *w, const kind_plan *plan, task_range tasks, 
   if (status != RIC_OK) { /* of a task that does not fit, nothing is kept */
     for (size_t k = 0; k < plan->tail_count; k++)
       records_cut(&tails[k], before[k]);
-    grazing_clear_row(&plan->rows, row);
+    g.found = grazing_clear_row(&plan->rows, row);
     grazing_end(&g, GRAZING_FAILED, RIC_EINVAL, &(ric_error){.message = "no memory for it"});
   }
-  if (g.outcome == GRAZING_DEGENERATE) { /* what follows there is not known, and why not is */
-    row_put_word(row, table_column(&plan->rows, "verdict"), RIC_GRAZING_UNDECIDED);
-    row_put_text(row, table_column(&plan->rows, "verdict_reason"), g.reason);
-  }
-  row_put_word(row, table_column(&plan->rows, "outcome"), (int)g.outcome);
-  row_put_text(row, table_column(&plan->rows, "reason"), g.reason);
+  finish_row(&g);
   return 0;
 }
 

@@ -28,22 +28,45 @@ enum { GRAZING_REASON_BYTES = 256 };
 /** Numbers of the section's coordinates. */
 double grazing_coordinates(const study_values *v);
 
-/** Bytes of a row. */
-double grazing_row_bytes(const study_values *v);
-
 /** Lays out the row and the tails.
  *  @param followed  name of the parameter, borrowed; @param traced  that of the second one, borrowed; NULL without
  *                   curves */
 void grazing_lay_out(const study_values *v, const char *followed, const char *traced, kind_plan *plan);
 
-/** Fills a row with what stands for nothing: NaN, -1, `none`. */
-void grazing_clear_row(const table *t, unsigned char *row);
+/** A row: the members that its columns name. What has several values is filled in its place. */
+typedef struct grazing_row {
+  int outcome;
+  const char *reason;
+  double parameter, period, time, phase;
+  long long obstacle, particle;
+  int side;
+  double slope, A_g, restitution;
+  int verdict;
+  const char *verdict_reason;
+  int regime;
+  long long first_negative, first_zero, settled;
+  ric_complex multiplier;
+  double second, alpha, stretch;
+  double *coefficient, *departure;
+  const double *eta, *xi, *kappa, *L;
+  ric_complex *multipliers;
+  const double *q, *v;
+  int64_t *window_period;
+  unsigned char *window_exists;
+  double *window_low, *window_high, *window_low_d, *window_high_d;
+  unsigned char *window_low_kind, *window_high_kind;
+  double *predicted_border_d, *predicted_flip_d;
+} grazing_row;
+
+/** Fills a row with what stands for nothing: NaN, -1, `none`. @returns its struct */
+grazing_row grazing_clear_row(const table *t, unsigned char *row);
 
 /** A task on its way. */
 typedef struct grazing_task {
   branch_family *b;
   const kind_plan *plan;
-  unsigned char *row;
+  unsigned char *row; /* its bytes */
+  grazing_row found;  /* its values */
   grazing_outcome outcome;
   char reason[GRAZING_REASON_BYTES];
   ric_grazing grazing; /* initialised, and set by grazing_find */

@@ -33,78 +33,188 @@ static const char *const regime_names[RIC_GRAZING_REGIMES] = {
 static const char *const side_names[] = {"floor", "wall", "none"};
 static const char *const flag_names[] = {"FALSE", "TRUE"}; /* h5py reads an enum of these words as bool */
 
-#define NUMBER     .type = COLUMN_F64, .units = "1"
-#define INTEGER    .type = COLUMN_I64, .units = "1"
-#define COMPLEX    .type = COLUMN_COMPLEX, .units = "1"
-#define WORD(list) .type = COLUMN_ENUM, .names = (list), .name_count = sizeof(list) / sizeof *(list), .units = "1"
-#define TEXT       .type = COLUMN_TEXT, .text_bytes = GRAZING_REASON_BYTES, .units = "1"
-#define POINT      .source = "[FN97] (4.1)"
-#define SECTION    .source = "[FN97] (5.5)-(5.8)"
-#define CRITERION  .source = "[FN97] (5.10)"
-#define MAP        .source = "[FN97] (5.11)"
-#define LIMIT_MAP  .source = "[FN97] (5.14)"
+#define POINT     .source = "[FN97] (4.1)"
+#define SECTION   .source = "[FN97] (5.5)-(5.8)"
+#define CRITERION .source = "[FN97] (5.10)"
+#define MAP       .source = "[FN97] (5.11)"
+#define LIMIT_MAP .source = "[FN97] (5.14)"
 
 /* The columns, in the order of the schema page. */
 static const column row_columns[] = {
-    {.name = "outcome", WORD(outcome_names), .long_name = "whether the family grazes", POINT},
-    {.name = "reason", TEXT, .long_name = "why not; empty when it does", POINT},
-    {.name = "parameter", NUMBER, .long_name = "the key that is followed", POINT},
-    {.name = "period", NUMBER, .long_name = "period of the grazing motion", POINT},
-    {.name = "time", NUMBER, .long_name = "when in the period it touches the obstacle", POINT},
-    {.name = "phase", NUMBER, .long_name = "this time over the period", POINT},
-    {.name = "obstacle", INTEGER, .long_name = "obstacle that is touched, floors by particle, then walls", POINT},
-    {.name = "particle", INTEGER, .long_name = "particle of it", POINT},
-    {.name = "side", WORD(side_names), .long_name = "which of its obstacles", POINT},
-    {.name = "slope", NUMBER, .long_name = "change of the gap's minimum per change of the parameter", POINT},
-    {.name = "A_g", NUMBER, .long_name = "second derivative of the gap in time at grazing", POINT},
-    {.name = "restitution", NUMBER, .long_name = "restitution at vanishing gap rate", .source = "[FN97] (2.9)"},
-    {.name = "verdict", WORD(verdict_names), .long_name = "what the coefficients c_i say", CRITERION},
-    {.name = "verdict_reason", TEXT, .long_name = "why; empty when continuous", CRITERION},
-    {.name = "regime", WORD(regime_names), .long_name = "what the multiplier predicts beyond grazing", LIMIT_MAP},
-    {.name = "first_negative", INTEGER, .long_name = "the first i with c_i < 0, -1: none", CRITERION},
-    {.name = "first_zero", INTEGER, .long_name = "the first i with c_i = 0 within the tolerance, -1: none", CRITERION},
-    {.name = "settled", INTEGER, .long_name = "from this i on all c_i > 0 is proved, -1: not", CRITERION},
-    {.name = "multiplier", COMPLEX, .long_name = "dominant multiplier of L", CRITERION},
-    {.name = "second", NUMBER, .long_name = "largest modulus of the others, 0: none", CRITERION},
-    {.name = "alpha", NUMBER, .long_name = "eta P xi, P the projector of the dominant multiplier", LIMIT_MAP},
-    {.name = "stretch", NUMBER, .long_name = "root of 2 A_g", MAP},
-    {.name = "coefficient", NUMBER, .axes = {"power"}, .long_name = "c_i = eta L^i xi", CRITERION},
-    {.name = "eta", NUMBER, .axes = {"coordinate"}, .long_name = "gradient of the gap's minimum", SECTION},
-    {.name = "xi", NUMBER, .axes = {"coordinate"}, .long_name = "change of the state per gap rate", SECTION},
-    {.name = "kappa", NUMBER, .axes = {"coordinate"}, .long_name = "its part of second order", MAP},
+    {.name = "outcome", WORD(grazing_row, outcome, outcome_names), .long_name = "whether the family grazes", POINT},
+    {.name = "reason",
+     TEXT(grazing_row, reason, GRAZING_REASON_BYTES),
+     .long_name = "why not; empty when it does",
+     POINT},
+    {.name = "parameter", NUMBER(grazing_row, parameter), .long_name = "the key that is followed", POINT},
+    {.name = "period", NUMBER(grazing_row, period), .long_name = "period of the grazing motion", POINT},
+    {.name = "time", NUMBER(grazing_row, time), .long_name = "when in the period it touches the obstacle", POINT},
+    {.name = "phase", NUMBER(grazing_row, phase), .long_name = "this time over the period", POINT},
+    {.name = "obstacle",
+     INTEGER(grazing_row, obstacle),
+     .long_name = "obstacle that is touched, floors by particle, then walls",
+     POINT},
+    {.name = "particle", INTEGER(grazing_row, particle), .long_name = "particle of it", POINT},
+    {.name = "side", WORD(grazing_row, side, side_names), .long_name = "which of its obstacles", POINT},
+    {.name = "slope",
+     NUMBER(grazing_row, slope),
+     .long_name = "change of the gap's minimum per change of the parameter",
+     POINT},
+    {.name = "A_g", NUMBER(grazing_row, A_g), .long_name = "second derivative of the gap in time at grazing", POINT},
+    {.name = "restitution",
+     NUMBER(grazing_row, restitution),
+     .long_name = "restitution at vanishing gap rate",
+     .source = "[FN97] (2.9)"},
+    {.name = "verdict",
+     WORD(grazing_row, verdict, verdict_names),
+     .long_name = "what the coefficients c_i say",
+     CRITERION},
+    {.name = "verdict_reason",
+     TEXT(grazing_row, verdict_reason, GRAZING_REASON_BYTES),
+     .long_name = "why; empty when continuous",
+     CRITERION},
+    {.name = "regime",
+     WORD(grazing_row, regime, regime_names),
+     .long_name = "what the multiplier predicts beyond grazing",
+     LIMIT_MAP},
+    {.name = "first_negative",
+     INTEGER(grazing_row, first_negative),
+     .long_name = "the first i with c_i < 0, -1: none",
+     CRITERION},
+    {.name = "first_zero",
+     INTEGER(grazing_row, first_zero),
+     .long_name = "the first i with c_i = 0 within the tolerance, -1: none",
+     CRITERION},
+    {.name = "settled",
+     INTEGER(grazing_row, settled),
+     .long_name = "from this i on all c_i > 0 is proved, -1: not",
+     CRITERION},
+    {.name = "multiplier", COMPLEX(grazing_row, multiplier), .long_name = "dominant multiplier of L", CRITERION},
+    {.name = "second", NUMBER(grazing_row, second), .long_name = "largest modulus of the others, 0: none", CRITERION},
+    {.name = "alpha",
+     NUMBER(grazing_row, alpha),
+     .long_name = "eta P xi, P the projector of the dominant multiplier",
+     LIMIT_MAP},
+    {.name = "stretch", NUMBER(grazing_row, stretch), .long_name = "root of 2 A_g", MAP},
+    {.name = "coefficient",
+     NUMBERS(grazing_row, coefficient),
+     .axes = {"power"},
+     .long_name = "c_i = eta L^i xi",
+     CRITERION},
+    {.name = "eta",
+     NUMBERS(grazing_row, eta),
+     .axes = {"coordinate"},
+     .long_name = "gradient of the gap's minimum",
+     SECTION},
+    {.name = "xi",
+     NUMBERS(grazing_row, xi),
+     .axes = {"coordinate"},
+     .long_name = "change of the state per gap rate",
+     SECTION},
+    {.name = "kappa",
+     NUMBERS(grazing_row, kappa),
+     .axes = {"coordinate"},
+     .long_name = "its part of second order",
+     MAP},
     {.name = "departure",
-     NUMBER,
+     NUMBERS(grazing_row, departure),
      .axes = {"coordinate"},
      .long_name = "where a discontinuous one leaves to",
      CRITERION},
-    {.name = "L", NUMBER, .axes = {"coordinate", "column"}, .long_name = "derivative of the return map", SECTION},
-    {.name = "multipliers", COMPLEX, .axes = {"eigenvalue"}, .long_name = "eigenvalues of L, largest first", SECTION},
-    {.name = "q", NUMBER, .axes = {"particle"}, .long_name = "displacements at the touch", POINT},
-    {.name = "v", NUMBER, .axes = {"particle"}, .long_name = "velocities there", POINT},
-    {.name = "window_period", INTEGER, .axes = {"window"}, .long_name = "period of the one-impact orbits", MAP},
-    {.name = "window_exists", WORD(flag_names), .axes = {"window"}, .long_name = "whether they have a window", MAP},
-    {.name = "window_low", NUMBER, .axes = {"window"}, .long_name = "parameter at the edge of smaller d", MAP},
-    {.name = "window_high", NUMBER, .axes = {"window"}, .long_name = "parameter at the edge of larger d", MAP},
-    {.name = "window_low_d", NUMBER, .axes = {"window"}, .long_name = "smaller d at which it ends", MAP},
-    {.name = "window_high_d", NUMBER, .axes = {"window"}, .long_name = "larger d at which it ends", MAP},
-    {.name = "window_low_kind", WORD(edge_names), .axes = {"window"}, .long_name = "what ends it there", MAP},
-    {.name = "window_high_kind", WORD(edge_names), .axes = {"window"}, .long_name = "what ends it there", MAP},
+    {.name = "L",
+     NUMBERS(grazing_row, L),
+     .axes = {"coordinate", "column"},
+     .long_name = "derivative of the return map",
+     SECTION},
+    {.name = "multipliers",
+     COMPLEXES(grazing_row, multipliers),
+     .axes = {"eigenvalue"},
+     .long_name = "eigenvalues of L, largest first",
+     SECTION},
+    {.name = "q", NUMBERS(grazing_row, q), .axes = {"particle"}, .long_name = "displacements at the touch", POINT},
+    {.name = "v", NUMBERS(grazing_row, v), .axes = {"particle"}, .long_name = "velocities there", POINT},
+    {.name = "window_period",
+     INTEGERS(grazing_row, window_period),
+     .axes = {"window"},
+     .long_name = "period of the one-impact orbits",
+     MAP},
+    {.name = "window_exists",
+     WORDS(grazing_row, window_exists, flag_names),
+     .axes = {"window"},
+     .long_name = "whether they have a window",
+     MAP},
+    {.name = "window_low",
+     NUMBERS(grazing_row, window_low),
+     .axes = {"window"},
+     .long_name = "parameter at the edge of smaller d",
+     MAP},
+    {.name = "window_high",
+     NUMBERS(grazing_row, window_high),
+     .axes = {"window"},
+     .long_name = "parameter at the edge of larger d",
+     MAP},
+    {.name = "window_low_d",
+     NUMBERS(grazing_row, window_low_d),
+     .axes = {"window"},
+     .long_name = "smaller d at which it ends",
+     MAP},
+    {.name = "window_high_d",
+     NUMBERS(grazing_row, window_high_d),
+     .axes = {"window"},
+     .long_name = "larger d at which it ends",
+     MAP},
+    {.name = "window_low_kind",
+     WORDS(grazing_row, window_low_kind, edge_names),
+     .axes = {"window"},
+     .long_name = "what ends it there",
+     MAP},
+    {.name = "window_high_kind",
+     WORDS(grazing_row, window_high_kind, edge_names),
+     .axes = {"window"},
+     .long_name = "what ends it there",
+     MAP},
     {.name = "predicted_border_d",
-     NUMBER,
+     NUMBERS(grazing_row, predicted_border_d),
      .axes = {"window"},
      .long_name = "leading order: its border edge",
      LIMIT_MAP},
-    {.name = "predicted_flip_d", NUMBER, .axes = {"window"}, .long_name = "leading order: its flip edge", LIMIT_MAP},
+    {.name = "predicted_flip_d",
+     NUMBERS(grazing_row, predicted_flip_d),
+     .axes = {"window"},
+     .long_name = "leading order: its flip edge",
+     LIMIT_MAP},
 };
 
 static const column curve_columns[] = {
-    {.name = "curve_phase", NUMBER, .long_name = "time of the touch over the period", POINT},
-    {.name = "curve_A_g", NUMBER, .long_name = "second derivative of the gap in time there", POINT},
-    {.name = "curve_verdict", WORD(verdict_names), .long_name = "what the coefficients c_i say", CRITERION},
-    {.name = "curve_first_negative", INTEGER, .long_name = "the first i with c_i < 0, -1: none", CRITERION},
-    {.name = "curve_multiplier", COMPLEX, .long_name = "dominant multiplier", CRITERION},
-    {.name = "curve_coefficient", NUMBER, .axes = {"power"}, .long_name = "c_i = eta L^i xi", CRITERION},
-    {.name = "curve_change", INTEGER, .long_name = "the i whose c_i changes its sign there, -1: none", CRITERION},
+    {.name = "curve_phase",
+     NUMBER(grazing_curve_point, phase),
+     .long_name = "time of the touch over the period",
+     POINT},
+    {.name = "curve_A_g",
+     NUMBER(grazing_curve_point, A_g),
+     .long_name = "second derivative of the gap in time there",
+     POINT},
+    {.name = "curve_verdict",
+     WORD(grazing_curve_point, verdict, verdict_names),
+     .long_name = "what the coefficients c_i say",
+     CRITERION},
+    {.name = "curve_first_negative",
+     INTEGER(grazing_curve_point, first_negative),
+     .long_name = "the first i with c_i < 0, -1: none",
+     CRITERION},
+    {.name = "curve_multiplier",
+     COMPLEX(grazing_curve_point, multiplier),
+     .long_name = "dominant multiplier",
+     CRITERION},
+    {.name = "curve_coefficient",
+     NUMBERS(grazing_curve_point, coefficient),
+     .axes = {"power"},
+     .long_name = "c_i = eta L^i xi",
+     CRITERION},
+    {.name = "curve_change",
+     INTEGER(grazing_curve_point, change),
+     .long_name = "the i whose c_i changes its sign there, -1: none",
+     CRITERION},
 };
 
 #define COUNT(columns) (sizeof(columns) / sizeof *(columns))
@@ -112,12 +222,6 @@ static const column curve_columns[] = {
 double grazing_coordinates(const study_values *v) {
   const double n = value_number(v, KEY_MODEL_PARTICLES, 0);
   return strcmp(value_word(v, KEY_ORBIT_MOTION), "forced") == 0 ? 2 * n : 2 * n - 1;
-}
-
-double grazing_row_bytes(const study_values *v) {
-  const double c = grazing_coordinates(v), windows = value_number(v, KEY_GRAZING_WINDOWS, 0);
-  return 8 * (c * c + 8 * c + 10 * windows + value_number(v, KEY_GRAZING_COEFFICIENTS, 0) + COUNT(row_columns)) +
-         2 * GRAZING_REASON_BYTES;
 }
 
 void grazing_lay_out(const study_values *v, const char *followed, const char *traced, kind_plan *plan) {
@@ -149,26 +253,24 @@ static bool ends_in_none(const column *c) {
 }
 
 /* Words whose list ends in `none` have that, those of a regime begin with it. */
-static void clear_words(const column *c, unsigned char *row) {
-  for (size_t i = 0; i < column_values(c); i++)
-    row_put_word_at(row, c, i, ends_in_none(c) ? (int)c->name_count - 1 : 0);
+static void clear_column(const column *c, unsigned char *at) {
+  const size_t count = column_values(c);
+  const int64_t no_place = -1;
+  const double no_number = NAN;
+  if (c->type == COLUMN_ENUM)
+    memset(at, ends_in_none(c) ? (int)c->name_count - 1 : 0, count);
+  for (size_t i = 0; c->type == COLUMN_I64 && i < count; i++)
+    memcpy(at + i * sizeof no_place, &no_place, sizeof no_place);
+  const bool numbers = c->type == COLUMN_F64 || c->type == COLUMN_COMPLEX;
+  for (size_t i = 0; numbers && i < column_bytes(c) / sizeof no_number; i++)
+    memcpy(at + i * sizeof no_number, &no_number, sizeof no_number);
 }
 
-static void clear_numbers(const column *c, unsigned char *row) {
-  double *numbers = row_numbers(row, c);
-  for (size_t i = 0; i < column_bytes(c) / sizeof *numbers; i++)
-    numbers[i] = NAN;
-}
-
-void grazing_clear_row(const table *t, unsigned char *row) {
+grazing_row grazing_clear_row(const table *t, unsigned char *row) {
+  grazing_row values = {0};
   memset(row, 0, t->row_bytes);
-  for (size_t k = 0; k < t->column_count; k++) {
-    const column *c = &t->columns[k];
-    if (c->type == COLUMN_ENUM)
-      clear_words(c, row);
-    else if (c->type == COLUMN_F64 || c->type == COLUMN_COMPLEX)
-      clear_numbers(c, row);
-    for (size_t i = 0; c->type == COLUMN_I64 && i < column_values(c); i++)
-      row_put_integer_at(row, c, i, -1);
-  }
+  for (size_t k = 0; k < t->column_count; k++)
+    clear_column(&t->columns[k], row + t->columns[k].offset);
+  row_load(t, row, &values);
+  return values;
 }

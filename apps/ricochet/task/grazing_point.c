@@ -39,20 +39,24 @@ static int see(const ric_family_point *point, void *user) {
   return 1;
 }
 
-static void put_obstacle(const grazing_task *g, size_t obstacle) {
-  const table *t = &g->plan->rows;
-  const ric_obstacle *touched = &g->b->model.obstacles[obstacle];
-  row_put_integer(g->row, table_column(t, "obstacle"), (long long)obstacle);
-  row_put_integer(g->row, table_column(t, "particle"), (long long)touched->coordinate);
-  row_put_word(g->row, table_column(t, "side"), touched->side > 0 ? 0 : 1);
+/* Writes what is known into the row, after which nothing outside it is referred to. */
+static void keep(grazing_task *g) {
+  row_store(&g->plan->rows, g->row, &g->found);
+  row_load(&g->plan->rows, g->row, &g->found);
 }
 
-static void put_when(const grazing_task *g, double parameter, double period, double time) {
-  const table *t = &g->plan->rows;
-  row_put_number(g->row, table_column(t, "parameter"), branch_family_value(g->b, parameter));
-  row_put_number(g->row, table_column(t, "period"), period);
-  row_put_number(g->row, table_column(t, "time"), time);
-  row_put_number(g->row, table_column(t, "phase"), time / period);
+static void put_obstacle(grazing_task *g, size_t obstacle) {
+  const ric_obstacle *touched = &g->b->model.obstacles[obstacle];
+  g->found.obstacle = (long long)obstacle;
+  g->found.particle = (long long)touched->coordinate;
+  g->found.side = touched->side > 0 ? 0 : 1;
+}
+
+static void put_when(grazing_task *g, double parameter, double period, double time) {
+  g->found.parameter = branch_family_value(g->b, parameter);
+  g->found.period = period;
+  g->found.time = time;
+  g->found.phase = time / period;
 }
 
 /* Per change of the study's parameter, of which the family's own may be the logarithm. */
@@ -60,16 +64,16 @@ static double slope_of(const grazing_task *g) {
   return g->grazing.slope / (g->b->log ? branch_family_value(g->b, g->grazing.parameter) : 1);
 }
 
-static void put_point(const grazing_task *g) {
-  const table *t = &g->plan->rows;
+static void put_point(grazing_task *g) {
   const ric_grazing *found = &g->grazing;
   put_when(g, found->parameter, found->period, found->time);
   put_obstacle(g, found->local.obstacle);
-  row_put_number(g->row, table_column(t, "slope"), slope_of(g));
-  row_put_number(g->row, table_column(t, "A_g"), found->local.acceleration);
-  row_put_number(g->row, table_column(t, "restitution"), found->local.restitution);
-  row_put_numbers(g->row, table_column(t, "q"), found->x);
-  row_put_numbers(g->row, table_column(t, "v"), found->x + found->numbers / 2);
+  g->found.slope = slope_of(g);
+  g->found.A_g = found->local.acceleration;
+  g->found.restitution = found->local.restitution;
+  g->found.q = found->x;
+  g->found.v = found->x + found->numbers / 2;
+  keep(g);
 }
 
 /* The family has come to its end. */
@@ -87,6 +91,7 @@ static ric_status end_without(grazing_task *g, double from, const touch *k, cons
 static ric_status end_degenerate(grazing_task *g, const touch *k, ric_status status, const ric_error *error) {
   put_when(g, k->parameter, k->period, k->time);
   put_obstacle(g, k->obstacle);
+  keep(g);
   return grazing_end(g, status == RIC_ENUMERIC ? GRAZING_DEGENERATE : GRAZING_FAILED, status, error);
 }
 
@@ -113,34 +118,27 @@ static long long place_or_none(size_t i) {
   return i == SIZE_MAX ? -1 : (long long)i;
 }
 
-static void put_complex(unsigned char *row, const column *c, const ric_complex *values, size_t count) {
-  double *parts = row_numbers(row, c);
-  for (size_t i = 0; i < count; i++) {
-    parts[2 * i] = values[i].re;
-    parts[2 * i + 1] = values[i].im;
-  }
+static void put_map(grazing_task *g, const ric_grazing_map *map) {
+  g->found.eta = map->eta;
+  g->found.xi = map->xi;
+  g->found.kappa = map->kappa;
+  g->found.L = map->L;
+  g->found.stretch = map->stretch;
+  keep(g);
 }
 
-static void put_map(const grazing_task *g, const ric_grazing_map *map) {
-  const table *t = &g->plan->rows;
-  row_put_numbers(g->row, table_column(t, "eta"), map->eta);
-  row_put_numbers(g->row, table_column(t, "xi"), map->xi);
-  row_put_numbers(g->row, table_column(t, "kappa"), map->kappa);
-  row_put_numbers(g->row, table_column(t, "L"), map->L);
-  row_put_number(g->row, table_column(t, "stretch"), map->stretch);
-}
-
-static void put_criterion(const grazing_task *g, const ric_grazing_criterion *k) {
-  const table *t = &g->plan->rows;
-  row_put_word(g->row, table_column(t, "verdict"), (int)k->verdict);
-  row_put_text(g->row, table_column(t, "verdict_reason"), k->reason);
-  row_put_word(g->row, table_column(t, "regime"), (int)k->regime);
-  row_put_integer(g->row, table_column(t, "first_negative"), place_or_none(k->first_negative));
-  row_put_integer(g->row, table_column(t, "first_zero"), place_or_none(k->first_zero));
-  row_put_integer(g->row, table_column(t, "settled"), place_or_none(k->settled));
-  put_complex(g->row, table_column(t, "multiplier"), &k->dominant, 1);
-  row_put_number(g->row, table_column(t, "second"), k->second);
-  row_put_number(g->row, table_column(t, "alpha"), k->alpha);
+static void put_criterion(grazing_task *g, const ric_grazing_criterion *k) {
+  grazing_row *r = &g->found;
+  r->verdict = (int)k->verdict;
+  r->verdict_reason = k->reason;
+  r->regime = (int)k->regime;
+  r->first_negative = place_or_none(k->first_negative);
+  r->first_zero = place_or_none(k->first_zero);
+  r->settled = place_or_none(k->settled);
+  r->multiplier = k->dominant;
+  r->second = k->second;
+  r->alpha = k->alpha;
+  keep(g);
 }
 
 /* All of them, whatever time or energy make of some. */
@@ -149,7 +147,7 @@ static ric_status put_multipliers(const grazing_task *g, const ric_grazing_map *
   RIC_TRY(ric_multipliers_init(&found, map->size, error));
   const ric_status status = ric_multipliers_of_matrix(map->L, map->size, 0, NULL, &found, error);
   if (status == RIC_OK)
-    put_complex(g->row, table_column(&g->plan->rows, "multipliers"), found.mu, map->size);
+    memcpy(g->found.multipliers, found.mu, map->size * sizeof *found.mu);
   ric_multipliers_clear(&found);
   return status;
 }
@@ -157,36 +155,33 @@ static ric_status put_multipliers(const grazing_task *g, const ric_grazing_map *
 /* --- the windows -------------------------------------------------------------------------------------------------- */
 
 static void put_edges(const grazing_task *g, const ric_grazing_window *window, size_t i) {
-  const table *t = &g->plan->rows;
-  const ric_grazing_edge *edges[] = {&window->low, &window->high};
-  static const char *const names[][3] = {{"window_low", "window_low_d", "window_low_kind"},
-                                         {"window_high", "window_high_d", "window_high_kind"}};
+  const grazing_row *r = &g->found;
   const double parameter = branch_family_value(g->b, g->grazing.parameter), slope = slope_of(g);
-  for (int k = 0; k < 2; k++) {
-    row_numbers(g->row, table_column(t, names[k][0]))[i] = parameter - edges[k]->d / slope;
-    row_numbers(g->row, table_column(t, names[k][1]))[i] = edges[k]->d;
-    row_put_word_at(g->row, table_column(t, names[k][2]), i, (int)edges[k]->kind);
-  }
+  r->window_low[i] = parameter - window->low.d / slope;
+  r->window_high[i] = parameter - window->high.d / slope;
+  r->window_low_d[i] = window->low.d;
+  r->window_high_d[i] = window->high.d;
+  r->window_low_kind[i] = (unsigned char)window->low.kind;
+  r->window_high_kind[i] = (unsigned char)window->high.kind;
 }
 
 /* A period without a window is one without orbits that are admissible and stable, or whose equations are singular. */
 static ric_status put_window(const grazing_task *g, const ric_grazing_map *map, const ric_grazing_criterion *k,
                              size_t period, ric_error *error) {
-  const table *t = &g->plan->rows;
+  const grazing_row *r = &g->found;
   const size_t i = period - 1;
   ric_grazing_window window = {0};
   const ric_status status = ric_grazing_window_find(map, period, &window, error);
   if (status != RIC_OK && status != RIC_ENUMERIC)
     return status;
   const bool exists = status == RIC_OK && window.exists;
-  row_put_integer_at(g->row, table_column(t, "window_period"), i, (long long)period);
-  row_put_word_at(g->row, table_column(t, "window_exists"), i, exists);
+  r->window_period[i] = (int64_t)period;
+  r->window_exists[i] = exists;
   if (exists)
     put_edges(g, &window, i);
   if (k->verdict == RIC_GRAZING_CONTINUOUS && period >= 2)
-    RIC_TRY(ric_grazing_predict_window(k, map->stretch, period,
-                                       row_numbers(g->row, table_column(t, "predicted_border_d")) + i,
-                                       row_numbers(g->row, table_column(t, "predicted_flip_d")) + i, error));
+    RIC_TRY(
+        ric_grazing_predict_window(k, map->stretch, period, r->predicted_border_d + i, r->predicted_flip_d + i, error));
   return RIC_OK;
 }
 
@@ -203,16 +198,14 @@ static ric_status put_windows(const grazing_task *g, const ric_grazing_map *map,
 
 /* --- together ----------------------------------------------------------------------------------------------------- */
 
-static ric_status judge(const grazing_task *g, ric_grazing_map *map, ric_error *error) {
-  const table *t = &g->plan->rows;
+static ric_status judge(grazing_task *g, ric_grazing_map *map, ric_error *error) {
   const ric_grazing_plane plane = {.time = value_number(g->b->values, KEY_GRAZING_SECTION, 0) * g->grazing.period};
-  const column *c = table_column(t, "coefficient");
+  const size_t count = (size_t)value_number(g->b->values, KEY_GRAZING_COEFFICIENTS, 0);
   ric_grazing_criterion criterion;
   RIC_TRY(ric_grazing_section(g->b->family, &g->grazing, &plane, map, NULL, error));
   put_map(g, map);
   RIC_TRY(put_multipliers(g, map, error));
-  RIC_TRY(ric_grazing_criterion_find(map, NULL, &criterion, row_numbers(g->row, c), column_values(c),
-                                     row_numbers(g->row, table_column(t, "departure")), error));
+  RIC_TRY(ric_grazing_criterion_find(map, NULL, &criterion, g->found.coefficient, count, g->found.departure, error));
   put_criterion(g, &criterion);
   return put_windows(g, map, &criterion, error);
 }

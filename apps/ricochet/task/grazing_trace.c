@@ -2,23 +2,18 @@
 #include "curve_trace.h"
 #include "grazing.h"
 
+/* A point: what the kind adds to those of any curve. */
 static int add_point(const ric_grazing_curve_point *point, void *user) {
-  curve_trace *t = user;
-  const table *layout = t->layout;
   const ric_grazing *g = point->grazing;
   const ric_grazing_criterion *k = point->criterion;
-  unsigned char *record = curve_trace_add(t, g->parameter, g->second, g->period);
-  if (!record)
-    return 1;
-  row_put_number(record, table_column(layout, "curve_phase"), g->phase);
-  row_put_number(record, table_column(layout, "curve_A_g"), g->local.acceleration);
-  row_put_word(record, table_column(layout, "curve_verdict"), (int)k->verdict);
-  row_put_integer(record, table_column(layout, "curve_first_negative"),
-                  k->first_negative == SIZE_MAX ? -1 : (long long)k->first_negative);
-  row_put_numbers(record, table_column(layout, "curve_multiplier"), (double[]){k->dominant.re, k->dominant.im});
-  row_put_numbers(record, table_column(layout, "curve_coefficient"), point->coefficients);
-  row_put_integer(record, table_column(layout, "curve_change"), point->zero == SIZE_MAX ? -1 : (long long)point->zero);
-  return 0;
+  grazing_curve_point found = {.phase = g->phase,
+                               .A_g = g->local.acceleration,
+                               .verdict = (int)k->verdict,
+                               .first_negative = k->first_negative == SIZE_MAX ? -1 : (long long)k->first_negative,
+                               .multiplier = k->dominant,
+                               .coefficient = point->coefficients,
+                               .change = point->zero == SIZE_MAX ? -1 : (long long)point->zero};
+  return curve_trace_add(user, g->parameter, g->second, g->period, &found.common);
 }
 
 static ric_status follow(curve_trace *t, const ric_curve_options *options, void *user, ric_curve_run *run,

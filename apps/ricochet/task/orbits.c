@@ -173,8 +173,9 @@ static int orbits_evaluate(worker *w, const kind_plan *plan, task_range tasks, u
   if (verify(w) == RIC_ESTOPPED ||
       stability_find(&w->stability, w->solver, &w->model.chain, w->pattern, &w->orbit) == RIC_ESTOPPED)
     return -1;
-  orbits_put(&w->orbit, reason_of(w), &w->verification, &plan->rows, row);
-  stability_put(&w->stability, &plan->rows, row);
+  orbits_row found = orbits_row_of(&w->orbit, reason_of(w), &w->verification);
+  stability_put(&w->stability, &found);
+  row_fill(&plan->rows, row, &found);
   return 0;
 }
 

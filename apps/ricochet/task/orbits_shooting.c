@@ -227,14 +227,15 @@ static const char *reason_of(const worker *w) {
   return w->verification.reason[0] ? w->verification.reason : w->ritz.reason;
 }
 
-static void fill_row(const worker *w, const table *t, unsigned char *row) {
-  orbits_put(&w->orbit, reason_of(w), &w->verification, t, row);
-  stability_put(&w->stability, t, row);
-  row_put_integer(row, table_column(t, "ritz_functions"), (long long)w->ritz.functions);
-  row_put_number(row, table_column(t, "ritz_frequency"), w->ritz.frequency);
-  row_put_number(row, table_column(t, "ritz_error"), w->ritz.error);
-  row_put_number(row, table_column(t, "ritz_error_v"), w->ritz.error_v);
-  row_put_number(row, table_column(t, "ritz_defect"), w->ritz.defect);
+static void fill_row(worker *w, const table *t, unsigned char *row) {
+  orbits_row found = orbits_row_of(&w->orbit, reason_of(w), &w->verification);
+  stability_put(&w->stability, &found);
+  found.ritz_functions = (long long)w->ritz.functions;
+  found.ritz_frequency = w->ritz.frequency;
+  found.ritz_error = w->ritz.error;
+  found.ritz_error_v = w->ritz.error_v;
+  found.ritz_defect = w->ritz.defect;
+  row_fill(t, row, &found);
 }
 
 static int shooting_evaluate(worker *w, const kind_plan *plan, task_range tasks, unsigned char *row, records *tails) {

@@ -25,7 +25,7 @@ static const char *const change_names[CHANGES] = {"none", "outwards", "inwards"}
 typedef struct special {
   int kind; /* index of special_names */
   double parameter;
-  long mode, harmonic;
+  long long mode, harmonic;
   int outcome; /* ric_outcome of the orbit exactly there */
   ric_complex multiplier;
   int change;
@@ -231,49 +231,36 @@ static ric_status find_all(search *s, bool critical, ric_error *error) {
 
 static const column columns[] = {
     {.name = "kind",
-     .type = COLUMN_ENUM,
-     .names = special_names,
-     .name_count = SPECIAL_KINDS,
-     .units = "1",
+     WORD(special, kind, special_names),
      .long_name = "resonance of a mode, zero of the contact determinant, or where multipliers leave the circle or come "
                   "back",
      .source = "[JAP] (11)-(12), (16)"},
     {.name = "parameter",
-     .type = COLUMN_F64,
-     .units = "1",
+     NUMBER(special, parameter),
      .long_name = "value of the swept parameter",
      .source = "[JAP] (11)-(12)"},
     {.name = "outcome",
-     .type = COLUMN_ENUM,
-     .names = orbit_outcome_names,
-     .name_count = RIC_OUTCOME_COUNT,
-     .units = "1",
+     WORD(special, outcome, orbit_outcome_names),
      .long_name = "outcome of the orbit exactly there",
      .source = "[JAP] (9)"},
-    {.name = "mode", .type = COLUMN_I64, .units = "1", .long_name = "resonant mode, else -1", .source = "[JAP] (12)"},
+    {.name = "mode", INTEGER(special, mode), .long_name = "resonant mode, else -1", .source = "[JAP] (12)"},
     {.name = "harmonic",
-     .type = COLUMN_I64,
-     .units = "1",
+     INTEGER(special, harmonic),
      .long_name = "oscillations of the mode per period, else 0",
      .source = "[JAP] (12)"},
 };
 
 static const column critical_columns[] = {
     {.name = "multiplier",
-     .type = COLUMN_COMPLEX,
-     .units = "1",
+     COMPLEX(special, multiplier),
      .long_name = "critical multiplier on the unit circle, in the upper half plane; NaN for other points",
      .source = "[JAP] (16)"},
     {.name = "change",
-     .type = COLUMN_ENUM,
-     .names = change_names,
-     .name_count = CHANGES,
-     .units = "1",
+     WORD(special, change, change_names),
      .long_name = "way of the multipliers as the parameter grows",
      .source = "[JAP] (16)"},
     {.name = "uncertainty",
-     .type = COLUMN_F64,
-     .units = "1",
+     NUMBER(special, uncertainty),
      .long_name = "of a critical parameter: half the width of its last bracket, or rounding; NaN for other points",
      .source = "[JAP] (16)"},
 };
@@ -286,17 +273,6 @@ static void lay_out(table *t, bool critical) {
   table_lay_out(t);
 }
 
-static void put_point(const special *point, const table *t, unsigned char *row) {
-  row_put_word(row, table_column(t, "kind"), point->kind);
-  row_put_number(row, table_column(t, "parameter"), point->parameter);
-  row_put_word(row, table_column(t, "outcome"), point->outcome);
-  row_put_integer(row, table_column(t, "mode"), point->mode);
-  row_put_integer(row, table_column(t, "harmonic"), point->harmonic);
-  row_put_numbers(row, table_column(t, "multiplier"), &point->multiplier.re);
-  row_put_word(row, table_column(t, "change"), point->change);
-  row_put_number(row, table_column(t, "uncertainty"), point->uncertainty);
-}
-
 static ric_status fill(extra_rows *extra, const search *s, ric_error *error) {
   const table *t = &extra->layout;
   extra->rows = calloc(s->count + 1, t->row_bytes);
@@ -304,7 +280,7 @@ static ric_status fill(extra_rows *extra, const search *s, ric_error *error) {
     return ric_fail(error, RIC_ENOMEM, "no memory for %zu special points", s->count);
   extra->count = s->count;
   for (size_t i = 0; i < s->count; i++)
-    put_point(&s->list[i], t, extra->rows + i * t->row_bytes);
+    row_store(t, extra->rows + i * t->row_bytes, &s->list[i]);
   return RIC_OK;
 }
 

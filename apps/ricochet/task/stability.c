@@ -76,28 +76,19 @@ ric_status stability_find_motion(stability *s, ric_shooting *shooting, const dou
   return RIC_OK;
 }
 
-static void put_count(const stability *s, const table *t, const char *name, size_t count, unsigned char *row) {
-  row_put_integer(row, table_column(t, name), s->found.stable == RIC_STABILITY_UNKNOWN ? -1 : (long long)count);
-}
-
-static void put_multipliers(const ric_multipliers *found, const column *c, unsigned char *row) {
-  double *parts = row_numbers(row, c);
-  for (size_t i = 0; parts && i < column_values(c); i++) {
-    parts[2 * i] = i < found->count ? found->mu[i].re : NAN;
-    parts[2 * i + 1] = i < found->count ? found->mu[i].im : NAN;
-  }
-}
-
-void stability_put(const stability *s, const table *t, unsigned char *row) {
-  const ric_multipliers *found = &s->found;
+void stability_put(stability *s, orbits_row *row) {
+  ric_multipliers *found = &s->found;
   if (!s->wanted)
     return;
-  row_put_word(row, table_column(t, "stable"), (int)found->stable);
-  row_put_text(row, table_column(t, "stable_reason"), found->reason);
-  row_put_number(row, table_column(t, "multiplier_max"), found->largest);
-  put_multipliers(found, table_column(t, "multipliers"), row);
-  put_count(s, t, "multiplier_outside", found->outside, row);
-  put_count(s, t, "multiplier_real_above", found->real_above, row);
-  put_count(s, t, "multiplier_real_below", found->real_below, row);
-  put_count(s, t, "multiplier_complex", found->complex_outside, row);
+  const bool known = found->stable != RIC_STABILITY_UNKNOWN;
+  for (size_t i = found->count; i < found->dimension; i++)
+    found->mu[i] = (ric_complex){NAN, NAN};
+  row->stable = (int)found->stable;
+  row->stable_reason = found->reason;
+  row->multiplier_max = found->largest;
+  row->multipliers = found->mu;
+  row->multiplier_outside = known ? (long long)found->outside : -1;
+  row->multiplier_real_above = known ? (long long)found->real_above : -1;
+  row->multiplier_real_below = known ? (long long)found->real_below : -1;
+  row->multiplier_complex = known ? (long long)found->complex_outside : -1;
 }

@@ -6,7 +6,7 @@
 #include <stdbool.h>
 
 #include "../study/study.h"
-#include "table.h"
+#include "orbits.h"
 
 typedef struct stability {
   bool wanted; /* without it, nothing else is set */
@@ -39,7 +39,7 @@ ric_status stability_find(stability *s, ric_orbit_solver *solver, const ric_chai
  *  @param shooting  NULL when there is none */
 ric_status stability_find_motion(stability *s, ric_shooting *shooting, const double *z, const ric_orbit *orbit);
 
-/** Fills its columns of a row. */
-void stability_put(const stability *s, const table *t, unsigned char *row);
+/** Sets its members of a row, which borrows them. */
+void stability_put(stability *s, orbits_row *row);
 
 #endif

@@ -1,5 +1,6 @@
 #include "table.h"
 
+#include <math.h>
 #include <stdbool.h>
 #include <string.h>
 
@@ -52,6 +53,8 @@ static bool set_extents(column *c, const table_axis *axes, size_t axis_count) {
 void table_add(table *t, const column *columns, size_t count, const table_axis *axes, size_t axis_count) {
   for (size_t i = 0; i < count; i++) {
     column added = columns[i];
+    if (!added.units)
+      added.units = "1";
     if (set_extents(&added, axes, axis_count))
       t->columns[t->column_count++] = added;
   }
@@ -74,6 +77,18 @@ size_t table_lay_out(table *t) {
   }
   t->row_bytes = at;
   return at;
+}
+
+double table_row_bytes(const table *t) {
+  double bytes = 0;
+  for (size_t i = 0; i < t->column_count; i++) {
+    const column *c = &t->columns[i];
+    double values = 1;
+    for (int k = 0; k < column_axes(c); k++)
+      values *= (double)c->extents[k];
+    bytes += 8 * ceil(values * (double)column_value_bytes(c) / 8);
+  }
+  return bytes;
 }
 
 const column *table_column(const table *t, const char *name) {
@@ -100,49 +115,65 @@ void table_put_attribute(table *t, const char *name, const char *attribute, doub
   }
 }
 
-void row_put_numbers(unsigned char *row, const column *c, const double *values) {
-  if (c && column_values(c) > 0)
-    memcpy(row + c->offset, values, column_bytes(c));
+/* Whether the member is a pointer to values rather than a value. */
+static bool is_pointer(const column *c) {
+  return c->type == COLUMN_TEXT || column_axes(c) > 0;
 }
 
-double *row_numbers(unsigned char *row, const column *c) {
-  return c ? (double *)(void *)(row + c->offset) : NULL;
+static void load(const column *c, unsigned char *at, unsigned char *member) {
+  int64_t wide;
+  if (is_pointer(c)) {
+    memcpy(member, &at, sizeof at);
+  } else if (c->type == COLUMN_ENUM) {
+    memcpy(member, &(int){*at}, sizeof(int));
+  } else if (c->type == COLUMN_I64) {
+    memcpy(&wide, at, sizeof wide);
+    memcpy(member, &(long long){wide}, sizeof(long long));
+  } else {
+    memcpy(member, at, column_value_bytes(c));
+  }
 }
 
-void row_put_number(unsigned char *row, const column *c, double value) {
-  if (c)
-    memcpy(row + c->offset, &value, sizeof value);
+static void store_text(const column *c, unsigned char *at, const char *text) {
+  const size_t length = strnlen(text, c->text_bytes);
+  memset(at, 0, c->text_bytes);
+  memcpy(at, text, length);
 }
 
-void row_put_integer_at(unsigned char *row, const column *c, size_t i, long long value) {
-  int64_t wide = value;
-  if (c)
-    memcpy(row + c->offset + i * sizeof wide, &wide, sizeof wide);
+static void store(const column *c, unsigned char *at, const unsigned char *member) {
+  const void *values;
+  int word;
+  long long integer;
+  if (is_pointer(c)) {
+    memcpy(&values, member, sizeof values);
+    if (!values || values == at)
+      return;
+    if (c->type == COLUMN_TEXT)
+      store_text(c, at, values);
+    else
+      memcpy(at, values, column_bytes(c));
+  } else if (c->type == COLUMN_ENUM) {
+    memcpy(&word, member, sizeof word);
+    *at = (unsigned char)word;
+  } else if (c->type == COLUMN_I64) {
+    memcpy(&integer, member, sizeof integer);
+    memcpy(at, &(int64_t){integer}, sizeof(int64_t));
+  } else {
+    memcpy(at, member, column_value_bytes(c));
+  }
 }
 
-void row_put_integer(unsigned char *row, const column *c, long long value) {
-  row_put_integer_at(row, c, 0, value);
+void row_load(const table *t, unsigned char *row, void *values) {
+  for (size_t i = 0; i < t->column_count; i++)
+    load(&t->columns[i], row + t->columns[i].offset, (unsigned char *)values + t->columns[i].member);
 }
 
-int64_t row_integer(const unsigned char *row, const column *c) {
-  int64_t value;
-  memcpy(&value, row + c->offset, sizeof value);
-  return value;
+void row_store(const table *t, unsigned char *row, const void *values) {
+  for (size_t i = 0; i < t->column_count; i++)
+    store(&t->columns[i], row + t->columns[i].offset, (const unsigned char *)values + t->columns[i].member);
 }
 
-void row_put_word_at(unsigned char *row, const column *c, size_t i, int value) {
-  if (c)
-    row[c->offset + i] = (unsigned char)value;
-}
-
-void row_put_word(unsigned char *row, const column *c, int value) {
-  row_put_word_at(row, c, 0, value);
-}
-
-void row_put_text(unsigned char *row, const column *c, const char *text) {
-  if (!c)
-    return;
-  size_t length = strnlen(text, c->text_bytes);
-  memset(row + c->offset, 0, c->text_bytes);
-  memcpy(row + c->offset, text, length);
+void row_fill(const table *t, unsigned char *row, const void *values) {
+  memset(row, 0, t->row_bytes);
+  row_store(t, row, values);
 }

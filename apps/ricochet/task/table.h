@@ -2,7 +2,11 @@
  *
  * A kind of study describes its results as tables; the evaluation of a task fills one row of the first, and adds
  * records to the others: rows of tables whose number differs from task to task, such as impacts. Checkpoint, result
- * writer, `show` and the schema page all read this description, so a column is added in one place. */
+ * writer, `show` and the schema page all read this description.
+ *
+ * In C a row is a plain struct of the kind's own, and each column says which member of it holds its value (NUMBER,
+ * INTEGER, ... below, which also check the member's type). row_load and row_store go from the bytes to the struct and
+ * back, so a column is one line of the list and one member, and nothing else knows its name. */
 #ifndef RICOCHET_APP_TABLE_H
 #define RICOCHET_APP_TABLE_H
 
@@ -36,10 +40,30 @@ typedef struct column {
   size_t text_bytes;                  /* bytes of a COLUMN_TEXT value */
   const char *const *names;           /* words of a COLUMN_ENUM */
   size_t name_count;
-  const char *units, *long_name, *source;
+  const char *units; /* NULL: "1", dimensionless */
+  const char *long_name, *source;
+  size_t member;                                       /* offset in the struct of a row; what it is: see below */
   column_attribute attributes[COLUMN_MOST_ATTRIBUTES]; /* the first ones that have a name */
   size_t offset; /* of the first value in a row; set by table_lay_out, a multiple of 8 */
 } column;
+
+/* A member's offset, if it has one of two types. */
+#define COLUMN_MEMBER(row, m, type, other)                                                                             \
+  (offsetof(row, m) + 0 * sizeof(char[_Generic(((row *)0)->m, type : 1, other : 1, default : -1)]))
+
+/* Type and member of a column. With further axes (the plural) the member is a pointer to all its values. */
+#define NUMBER(row, m)    .type = COLUMN_F64, .member = COLUMN_MEMBER(row, m, double, float)
+#define NUMBERS(row, m)   .type = COLUMN_F64, .member = COLUMN_MEMBER(row, m, double *, const double *)
+#define INTEGER(row, m)   .type = COLUMN_I64, .member = COLUMN_MEMBER(row, m, long long, unsigned long long)
+#define INTEGERS(row, m)  .type = COLUMN_I64, .member = COLUMN_MEMBER(row, m, int64_t *, const int64_t *)
+#define COMPLEX(row, m)   .type = COLUMN_COMPLEX, .member = COLUMN_MEMBER(row, m, ric_complex, float)
+#define COMPLEXES(row, m) .type = COLUMN_COMPLEX, .member = COLUMN_MEMBER(row, m, ric_complex *, const ric_complex *)
+#define TEXT(row, m, size)                                                                                             \
+  .type = COLUMN_TEXT, .text_bytes = (size), .member = COLUMN_MEMBER(row, m, const char *, char *)
+#define WORDS_OF(list)     .type = COLUMN_ENUM, .names = (list), .name_count = sizeof(list) / sizeof *(list)
+#define WORD(row, m, list) WORDS_OF(list), .member = COLUMN_MEMBER(row, m, int, unsigned)
+/* Words with further axes are bytes. */
+#define WORDS(row, m, list) WORDS_OF(list), .member = COLUMN_MEMBER(row, m, unsigned char *, const unsigned char *)
 
 enum { TABLE_MAX_COLUMNS = 48 };
 
@@ -80,6 +104,9 @@ void table_drop(table *t, const char *name);
 /** Sets the offsets and row_bytes; returns row_bytes. */
 size_t table_lay_out(table *t);
 
+/** Bytes of a row as a number that cannot overflow, before or after table_lay_out. */
+double table_row_bytes(const table *t);
+
 /** Column by name, NULL when the table has none. */
 const column *table_column(const table *t, const char *name);
 
@@ -89,22 +116,17 @@ void table_put_long_name(table *t, const char *name, const char *long_name);
 /** Gives a column of the table, if it has one of this name, a further attribute. */
 void table_put_attribute(table *t, const char *name, const char *attribute, double value);
 
-/* Writing into a row. A NULL column (a table without it) is skipped, so that optional columns need no test. */
-void row_put_numbers(unsigned char *row, const column *c, const double *values);
-void row_put_number(unsigned char *row, const column *c, double value);
-void row_put_integer(unsigned char *row, const column *c, long long value);
-void row_put_word(unsigned char *row, const column *c, int value);
-void row_put_text(unsigned char *row, const column *c, const char *text);
+/** Reads a row into the struct of its table: numbers and words are copied; pointers to several values and to texts then
+ *  lead into the row, which is filled through them. Members whose column the table does not have stay as they are. A
+ *  text without a zero at its end has all its bytes.
+ *  @param row  [row_bytes] at a multiple of 8 bytes */
+void row_load(const table *t, unsigned char *row, void *values);
 
-/** Writes value `i` of a column with further axes. */
-void row_put_integer_at(unsigned char *row, const column *c, size_t i, long long value);
-void row_put_word_at(unsigned char *row, const column *c, size_t i, int value);
+/** Writes the struct of a row into it. What a pointer leads to is copied, unless it stands in the row already or the
+ *  pointer is NULL. */
+void row_store(const table *t, unsigned char *row, const void *values);
 
-/** The integer of a column without further axes. */
-int64_t row_integer(const unsigned char *row, const column *c);
-
-/** Where the numbers of a column stand in a row, to be filled in place; NULL for a NULL column. The row begins at a
- *  multiple of 8 bytes. */
-double *row_numbers(unsigned char *row, const column *c);
+/** Fills a row of zeros from its struct. */
+void row_fill(const table *t, unsigned char *row, const void *values);
 
 #endif

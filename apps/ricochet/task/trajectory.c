@@ -29,7 +29,7 @@ typedef struct sight {
   const kind_plan *plan;
   records *tails;
   ric_sampler sampler;
-  double *exponents; /* of the row; NULL when they are not asked for */
+  trajectory_row row; /* its lyapunov is NULL when exponents are not asked for */
   convergence converged;
   int no_memory;
 } sight;
@@ -52,7 +52,7 @@ static ric_flow_method flow_of(const study_values *v) {
 static int plan_memory(const study *s, const study_values *v, kind_plan *plan, message *why) {
   const trajectory_shape shape = trajectory_shape_of(v);
   const char *what = shape.exponents > 0 ? "a trajectory with its tangent vectors" : "a trajectory";
-  plan->memory = 2 * trajectory_row_bytes(&shape) + 8 * shape.samples +
+  plan->memory = 2 * table_row_bytes(&plan->rows) + 8 * shape.samples +
                  shape.particles * (TRAJECTORY_PARTICLE_BYTES + LATTICE_MODEL_BYTES) +
                  convergence_bytes(shape.exponents, flow_of(v) == RIC_FLOW_CVODES);
   int code = machine_refuse_size(s, what, plan->memory, why);
@@ -180,10 +180,17 @@ static int see_segment(const ric_segment *piece, double end, void *user) {
 }
 
 static void add_record(sight *seen, size_t which, const ric_event *event) {
+  const event_record found = {.time = event->time,
+                              .particle = (long long)event->coordinate,
+                              .side = seen->worker->model.obstacles[event->obstacle].side > 0 ? 0 : 1,
+                              .kind = (int)event->kind,
+                              .gap_rate = event->gap_rate,
+                              .impulse = event->impulse,
+                              .depth = event->depth,
+                              .accumulation = event->accumulation};
   unsigned char *record = records_add(&seen->tails[which]);
   if (record)
-    trajectory_put_event(&seen->plan->tails[which].records, event, seen->worker->model.obstacles[event->obstacle].side,
-                         record);
+    row_store(&seen->plan->tails[which].records, record, &found);
   else
     seen->no_memory = 1;
 }
@@ -202,10 +209,10 @@ static int see_event(const ric_event *event, void *user) {
 static ric_status follow(worker *w, sight *seen, ric_trajectory *trajectory, ric_run *did, ric_error *error) {
   const ric_observer observer = {.segment = see_segment, .event = see_event, .user = seen};
   const double end = w->times[w->samples - 1];
-  if (!seen->exponents)
+  if (!seen->row.lyapunov)
     return ric_trajectory_run(trajectory, end, &observer, did, error);
   return convergence_run(&seen->converged, trajectory, end, value_number(w->values, KEY_TIME_LYAPUNOV_INTERVAL, 0),
-                         &observer, seen->exponents, did, error);
+                         &observer, seen->row.lyapunov, did, error);
 }
 
 static ric_status run(worker *w, sight *seen, const ric_system *system, ric_run *did, ric_error *error) {
@@ -244,9 +251,8 @@ static ric_status move(worker *w, sight *seen, ric_run *did, verdict *found) {
 
 /* --- its row --- */
 
-static void fill_nan(unsigned char *row, const column *c) {
-  double *numbers = row_numbers(row, c);
-  for (size_t i = 0; numbers && i < column_values(c); i++)
+static void fill_nan(double *numbers, size_t count) {
+  for (size_t i = 0; numbers && i < count; i++)
     numbers[i] = NAN;
 }
 
@@ -259,36 +265,35 @@ static void fill_times(worker *w) {
 
 /* The sampler writes states into the row itself. */
 static sight begin_row(worker *w, const kind_plan *plan, unsigned char *row, records *tails) {
-  const table *t = &plan->rows;
-  const column *q = table_column(t, "q"), *v = table_column(t, "v"), *exponents = table_column(t, "lyapunov");
-  memset(row, 0, t->row_bytes);
+  const size_t n = w->model.lattice.particles;
+  trajectory_row found = {0};
+  memset(row, 0, plan->rows.row_bytes);
+  row_load(&plan->rows, row, &found);
   fill_times(w);
-  row_put_numbers(row, table_column(t, "t"), w->times);
-  fill_nan(row, q);
-  fill_nan(row, v);
-  fill_nan(row, exponents);
-  return (sight){.worker = w,
-                 .plan = plan,
-                 .tails = tails,
-                 .exponents = row_numbers(row, exponents),
-                 .converged = {.layout = &plan->tails[TAIL_LYAPUNOV].records, .to = &tails[TAIL_LYAPUNOV]},
-                 .sampler = {.times = w->times,
-                             .count = w->samples,
-                             .coordinates = w->model.lattice.particles,
-                             .speeds = w->model.lattice.particles,
-                             .q = row_numbers(row, q),
-                             .u = row_numbers(row, v)}};
+  fill_nan(found.q, w->samples * n);
+  fill_nan(found.v, w->samples * n);
+  fill_nan(found.lyapunov, 2 * n);
+  found.t = w->times;
+  return (sight){
+      .worker = w,
+      .plan = plan,
+      .tails = tails,
+      .row = found,
+      .converged = {.layout = &plan->tails[TAIL_LYAPUNOV].records, .to = &tails[TAIL_LYAPUNOV]},
+      .sampler = {.times = w->times, .count = w->samples, .coordinates = n, .speeds = n, .q = found.q, .u = found.v}};
 }
 
-static void finish_row(const table *t, const verdict *found, const ric_run *did, unsigned char *row) {
-  row_put_word(row, table_column(t, "outcome"), found->outcome);
-  row_put_text(row, table_column(t, "reason"), found->reason);
-  row_put_number(row, table_column(t, "time"), did->time);
-  row_put_number(row, table_column(t, "energy_start"), did->energy_start);
-  row_put_number(row, table_column(t, "energy_end"), did->energy_end);
-  row_put_number(row, table_column(t, "impact_loss"), did->impact_loss);
-  row_put_integer(row, table_column(t, "steps"), (long long)did->flow.steps);
-  row_put_integer(row, table_column(t, "force_evaluations"), (long long)did->flow.force_evaluations);
+static void finish_row(sight *seen, const verdict *found, const ric_run *did, unsigned char *row) {
+  trajectory_row *r = &seen->row;
+  r->outcome = found->outcome;
+  r->reason = found->reason;
+  r->time = did->time;
+  r->energy_start = did->energy_start;
+  r->energy_end = did->energy_end;
+  r->impact_loss = did->impact_loss;
+  r->steps = (long long)did->flow.steps;
+  r->force_evaluations = (long long)did->flow.force_evaluations;
+  row_store(&seen->plan->rows, row, r);
 }
 
 static int trajectory_evaluate(worker *w, const kind_plan *plan, task_range tasks, unsigned char *row, records *tails) {
@@ -300,7 +305,7 @@ static int trajectory_evaluate(worker *w, const kind_plan *plan, task_range task
     return -1;
   if (found.outcome != TRAJECTORY_NO_ORBIT && move(w, &seen, &did, &found) == RIC_ESTOPPED)
     return -1;
-  finish_row(&plan->rows, &found, &did, row);
+  finish_row(&seen, &found, &did, row);
   return 0;
 }
 
@@ -342,9 +347,8 @@ static int trajectory_plan(const study *s, kind_plan *plan, message *why) {
     return refuse(why, EXIT_RUN, "%s: no memory for the values of a task", study_name(s));
   const trajectory_shape shape = trajectory_shape_of(v);
   *plan = (kind_plan){.outcome = "outcome"};
+  trajectory_lay_out(&shape, plan);
   int code = plan_memory(s, v, plan, why);
-  if (!code)
-    trajectory_lay_out(&shape, plan);
   study_values_destroy(&v);
   return code ? code : check_only_task(s, why);
 }

@@ -14,6 +14,25 @@ enum { TAIL_IMPACTS, TAIL_EVENTS, TAIL_LYAPUNOV, TRAJECTORY_TAILS };
 /** Outcomes: those of a run, and of tasks without one. */
 enum { TRAJECTORY_NO_ORBIT = RIC_RUN_OUTCOMES, TRAJECTORY_REFUSED, TRAJECTORY_OUTCOMES };
 
+/** A row: the members that its columns name. The sampler fills q and v in their places. */
+typedef struct trajectory_row {
+  int outcome;
+  const char *reason;
+  const double *t;
+  double *q, *v;
+  double time, energy_start, energy_end, impact_loss;
+  long long steps, force_evaluations;
+  double *lyapunov;
+} trajectory_row;
+
+/** A record of an impact or another event. */
+typedef struct event_record {
+  double time;
+  long long particle;
+  int side, kind;
+  double gap_rate, impulse, depth, accumulation;
+} event_record;
+
 /** What the sizes of rows and tails follow from. */
 typedef struct trajectory_shape {
   double particles, samples, exponents; /* exponents: 0 when they are not asked for */
@@ -21,13 +40,7 @@ typedef struct trajectory_shape {
 
 trajectory_shape trajectory_shape_of(const study_values *v);
 
-/** Bytes of a row, as a number that cannot overflow. */
-double trajectory_row_bytes(const trajectory_shape *shape);
-
 /** Lays out the row and the tails. */
 void trajectory_lay_out(const trajectory_shape *shape, kind_plan *plan);
-
-/** Writes an event into a record of the tail. @param side  of its obstacle, +1 floor, -1 wall */
-void trajectory_put_event(const table *t, const ric_event *event, int side, unsigned char *record);
 
 #endif

@@ -1,6 +1,7 @@
 #include <stdbool.h>
 #include <string.h>
 
+#include "convergence.h"
 #include "trajectory.h"
 
 static const char *const outcome_names[TRAJECTORY_OUTCOMES] = {
@@ -21,142 +22,109 @@ static const char *const event_names[RIC_EVENT_KINDS] = {
 /* The columns, in the order of the schema page. */
 static const column row_columns[] = {
     {.name = "outcome",
-     .type = COLUMN_ENUM,
-     .names = outcome_names,
-     .name_count = TRAJECTORY_OUTCOMES,
-     .units = "1",
+     WORD(trajectory_row, outcome, outcome_names),
      .long_name = "how the run ended",
      .source = "[JAP] (1)-(3)"},
     {.name = "reason",
-     .type = COLUMN_TEXT,
-     .text_bytes = RIC_REASON_BYTES,
-     .units = "1",
+     TEXT(trajectory_row, reason, RIC_REASON_BYTES),
      .long_name = "why it did not reach the end; empty when it did",
      .source = "[JAP] (1)-(3)"},
     {.name = "t",
-     .type = COLUMN_F64,
+     NUMBERS(trajectory_row, t),
      .axes = {"sample"},
-     .units = "1",
      .long_name = "times of the samples",
      .source = "[JAP] (1)-(3)"},
     {.name = "q",
-     .type = COLUMN_F64,
+     NUMBERS(trajectory_row, q),
      .axes = {"sample", "particle"},
-     .units = "1",
      .long_name = "displacements, NaN where the run did not come",
      .source = "[JAP] (1)-(3)"},
     {.name = "v",
-     .type = COLUMN_F64,
+     NUMBERS(trajectory_row, v),
      .axes = {"sample", "particle"},
-     .units = "1",
      .long_name = "velocities, after the impact where there is one",
      .source = "[JAP] (1)-(3)"},
-    {.name = "time",
-     .type = COLUMN_F64,
-     .units = "1",
-     .long_name = "time that the run reached",
-     .source = "[JAP] (1)-(3)"},
-    {.name = "energy_start", .type = COLUMN_F64, .units = "1", .long_name = "energy at t = 0", .source = "[JAP] (1)"},
+    {.name = "time", NUMBER(trajectory_row, time), .long_name = "time that the run reached", .source = "[JAP] (1)-(3)"},
+    {.name = "energy_start",
+     NUMBER(trajectory_row, energy_start),
+     .long_name = "energy at t = 0",
+     .source = "[JAP] (1)"},
     {.name = "energy_end",
-     .type = COLUMN_F64,
-     .units = "1",
+     NUMBER(trajectory_row, energy_end),
      .long_name = "energy at the time reached",
      .source = "[JAP] (1)"},
     {.name = "impact_loss",
-     .type = COLUMN_F64,
-     .units = "1",
+     NUMBER(trajectory_row, impact_loss),
      .long_name = "energy that the impacts took",
      .source = "[FN97] (2.9)"},
-    {.name = "steps", .type = COLUMN_I64, .units = "1", .long_name = "steps of the integrator", .source = "count"},
+    {.name = "steps", INTEGER(trajectory_row, steps), .long_name = "steps of the integrator", .source = "count"},
     {.name = "force_evaluations",
-     .type = COLUMN_I64,
-     .units = "1",
+     INTEGER(trajectory_row, force_evaluations),
      .long_name = "evaluations of the forces",
      .source = "count"},
     {.name = "lyapunov",
-     .type = COLUMN_F64,
+     NUMBERS(trajectory_row, lyapunov),
      .axes = {"exponent"},
-     .units = "1",
      .long_name = "Lyapunov exponents per unit of time, NaN where none are known",
      .source = "logarithms of the diagonal of R"},
 };
 
 static const column impact_columns[] = {
-    {.name = "impact_time", .type = COLUMN_F64, .units = "1", .long_name = "time of an impact", .source = "[JAP] (3)"},
+    {.name = "impact_time", NUMBER(event_record, time), .long_name = "time of an impact", .source = "[JAP] (3)"},
     {.name = "impact_particle",
-     .type = COLUMN_I64,
-     .units = "1",
+     INTEGER(event_record, particle),
      .long_name = "particle that hits",
      .source = "[JAP] (3)"},
     {.name = "impact_side",
-     .type = COLUMN_ENUM,
-     .names = side_names,
-     .name_count = 2,
-     .units = "1",
+     WORD(event_record, side, side_names),
      .long_name = "which of its obstacles it hits",
      .source = "[JAP] (3)"},
     {.name = "impact_kind",
-     .type = COLUMN_ENUM,
-     .names = event_names,
-     .name_count = RIC_EVENT_KINDS,
-     .units = "1",
+     WORD(event_record, kind, event_names),
      .long_name = "kind of the impact",
      .source = "[FN97] (2.9)"},
     {.name = "impact_gap_rate",
-     .type = COLUMN_F64,
-     .units = "1",
+     NUMBER(event_record, gap_rate),
      .long_name = "rate of the gap just before the impact",
      .source = "[FN97] (2.9)"},
     {.name = "impact_impulse",
-     .type = COLUMN_F64,
-     .units = "1",
+     NUMBER(event_record, impulse),
      .long_name = "impulse of the impact",
      .source = "[FN97] (2.9)"},
 };
 
 static const column event_columns[] = {
-    {.name = "event_time", .type = COLUMN_F64, .units = "1", .long_name = "time of an event", .source = "[FN97] (2.9)"},
+    {.name = "event_time", NUMBER(event_record, time), .long_name = "time of an event", .source = "[FN97] (2.9)"},
     {.name = "event_particle",
-     .type = COLUMN_I64,
-     .units = "1",
+     INTEGER(event_record, particle),
      .long_name = "particle that it happens to",
      .source = "[FN97] (2.9)"},
     {.name = "event_side",
-     .type = COLUMN_ENUM,
-     .names = side_names,
-     .name_count = 2,
-     .units = "1",
+     WORD(event_record, side, side_names),
      .long_name = "at which of its obstacles",
      .source = "[FN97] (2.9)"},
     {.name = "event_kind",
-     .type = COLUMN_ENUM,
-     .names = event_names,
-     .name_count = RIC_EVENT_KINDS,
-     .units = "1",
+     WORD(event_record, kind, event_names),
      .long_name = "kind of the event",
      .source = "[FN97] (2.9)"},
     {.name = "event_depth",
-     .type = COLUMN_F64,
-     .units = "1",
+     NUMBER(event_record, depth),
      .long_name = "smallest gap of a grazing contact, NaN for other kinds",
      .source = "[FN97] (4.1)"},
     {.name = "event_accumulation",
-     .type = COLUMN_F64,
-     .units = "1",
+     NUMBER(event_record, accumulation),
      .long_name = "time at which the impacts of a chatter accumulate, NaN for other kinds",
      .source = "[FN97] (2.9)"},
 };
 
 static const column lyapunov_columns[] = {
     {.name = "lyapunov_time",
-     .type = COLUMN_F64,
-     .units = "1",
+     NUMBER(lyapunov_record, time),
      .long_name = "time over which the exponents were taken",
      .source = "logarithms of the diagonal of R"},
     {.name = "lyapunov_history",
-     .type = COLUMN_F64,
+     NUMBERS(lyapunov_record, history),
      .axes = {"exponent"},
-     .units = "1",
      .long_name = "Lyapunov exponents by then",
      .source = "logarithms of the diagonal of R"},
 };
@@ -173,10 +141,6 @@ trajectory_shape trajectory_shape_of(const study_values *v) {
   return (trajectory_shape){.particles = particles,
                             .samples = value_number(v, KEY_TIME_SAMPLES, 0),
                             .exponents = value_flag(v, KEY_TIME_LYAPUNOV) ? 2 * particles : 0};
-}
-
-double trajectory_row_bytes(const trajectory_shape *shape) {
-  return 8 * shape->samples * (1 + 2 * shape->particles) + 8 * shape->exponents + RIC_REASON_BYTES + 8 * ROW_COLUMNS;
 }
 
 void trajectory_lay_out(const trajectory_shape *shape, kind_plan *plan) {
@@ -202,16 +166,4 @@ void trajectory_lay_out(const trajectory_shape *shape, kind_plan *plan) {
   for (size_t k = 0; k < plan->tail_count; k++)
     kind_lay_out_tail(&plan->tails[k], "trajectory", tails[k].axis, tails[k].offset, tails[k].meaning, tails[k].columns,
                       tails[k].count, axes, axis_count);
-}
-
-void trajectory_put_event(const table *t, const ric_event *event, int side, unsigned char *record) {
-  const bool impact = strcmp(t->row_axis, "impact_row") == 0;
-  row_put_number(record, table_column(t, impact ? "impact_time" : "event_time"), event->time);
-  row_put_integer(record, table_column(t, impact ? "impact_particle" : "event_particle"), (long long)event->coordinate);
-  row_put_word(record, table_column(t, impact ? "impact_side" : "event_side"), side > 0 ? 0 : 1);
-  row_put_word(record, table_column(t, impact ? "impact_kind" : "event_kind"), (int)event->kind);
-  row_put_number(record, table_column(t, "impact_gap_rate"), event->gap_rate);
-  row_put_number(record, table_column(t, "impact_impulse"), event->impulse);
-  row_put_number(record, table_column(t, "event_depth"), event->depth);
-  row_put_number(record, table_column(t, "event_accumulation"), event->accumulation);
 }
