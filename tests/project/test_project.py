@@ -1,13 +1,14 @@
 """What holds for the project as a whole: includes of the application (mpi.h in run/ and result/ only, hdf5.h in result/
 only, yaml.h in study/ only, public headers of the library only, and between rooms only towards
-study <- task, run <- result <- command), formatting, generated pages, linked libraries, the benchmark's output."""
+base <- study <- task, run <- result <- command), formatting, generated pages, linked libraries, the benchmark's output."""
 
 import json
 import re
 import subprocess
 
-ALLOWED = {"study": {"study"}, "task": {"task", "study"}, "run": {"run", "study"},
-           "result": {"result", "study", "task", "run"}, "command": {"command", "study", "task", "run", "result"}}
+ALLOWED = {"base": {"base"}, "study": {"base", "study"}, "task": {"base", "study", "task"},
+           "run": {"base", "study", "run"}, "result": {"base", "study", "task", "run", "result"},
+           "command": {"base", "study", "task", "run", "result", "command"}}
 HOMES = {"mpi.h": {"run", "result"}, "hdf5.h": {"result"}, "hdf5_hl.h": {"result"}, "yaml.h": {"study"}}
 
 

@@ -2,7 +2,7 @@
 #include <ricochet/multipliers.h>
 
 #include "support.h"
-#include "task/table.h"
+#include "base/table.h"
 
 static const char *const colours[] = {"red", "green", "blue"};
 

@@ -5,7 +5,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "../study/message.h"
+#include "../base/message.h"
 
 /** Replaces the text of a study that restarts by one that says itself where it starts, its `--set` values included, so
  *  that its result can be run again without the earlier one.

@@ -10,7 +10,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "../study/message.h"
+#include "../base/message.h"
 
 /** Starts MPI. Without this call the process is alone. */
 void ranks_start(int *argc, char ***argv);

@@ -5,8 +5,8 @@
 #include <ricochet/ricochet.h>
 #include <stdbool.h>
 
-#include "records.h"
-#include "table.h"
+#include "../base/records.h"
+#include "../base/table.h"
 
 /** A record: the exponents by a time. */
 typedef struct lyapunov_record {

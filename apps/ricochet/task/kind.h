@@ -10,8 +10,8 @@
 #include <stdint.h>
 
 #include "../study/study.h"
-#include "records.h"
-#include "table.h"
+#include "../base/records.h"
+#include "../base/table.h"
 
 enum { KIND_MOST_TAILS = 6, KIND_MOST_EXTRAS = 2 };
 

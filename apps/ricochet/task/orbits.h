@@ -5,7 +5,7 @@
 #include <ricochet/ricochet.h>
 
 #include "../study/study.h"
-#include "table.h"
+#include "../base/table.h"
 
 /** Words of ric_outcome. */
 extern const char *const orbit_outcome_names[RIC_OUTCOME_COUNT];
