@@ -4,8 +4,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "../task/kind.h"
-#include "../task/machine.h"
+#include "../kind/kind.h"
+#include "../kind/machine.h"
 #include "command.h"
 #include "restart.h"
 
