@@ -65,6 +65,10 @@ typedef struct column {
 /* Words with further axes are bytes. */
 #define WORDS(row, m, list) WORDS_OF(list), .member = COLUMN_MEMBER(row, m, unsigned char *, const unsigned char *)
 
+/* A line of a list of columns: name, type and member, what it is, its source, and what else there is to say. */
+#define COLUMN(column_name, type_and_member, meaning, ...)                                                             \
+  { .name = (column_name), type_and_member, .long_name = (meaning), __VA_ARGS__ }
+
 enum { TABLE_MAX_COLUMNS = 48 };
 
 typedef struct table {

@@ -24,24 +24,16 @@ typedef struct basin_attractor {
 } basin_attractor;
 
 static const column task_columns[] = {
-    {.name = "attractor",
-     INTEGER(basin_label, attractor),
-     .long_name = "which attractor the start comes to; -1: none, -2: one past the first 1000",
-     SOURCE},
+    COLUMN("attractor", INTEGER(basin_label, attractor),
+           "which attractor the start comes to; -1: none, -2: one past the first 1000", SOURCE),
 };
 
 static const column attractor_columns[] = {
-    {.name = "found_period",
-     INTEGER(basin_attractor, period),
-     .long_name = "period of the attractor; 0: all without one",
-     SOURCE},
-    {.name = "found_tasks", INTEGER(basin_attractor, tasks), .long_name = "number of starts that come to it", SOURCE},
-    {.name = "found_first", INTEGER(basin_attractor, first), .long_name = "first task that does", SOURCE},
-    {.name = "found_lowest",
-     NUMBERS(basin_attractor, lowest),
-     .axes = {"coordinate"},
-     .long_name = "state of it with the smallest observed number; of the first task",
-     SOURCE},
+    COLUMN("found_period", INTEGER(basin_attractor, period), "period of the attractor; 0: all without one", SOURCE),
+    COLUMN("found_tasks", INTEGER(basin_attractor, tasks), "number of starts that come to it", SOURCE),
+    COLUMN("found_first", INTEGER(basin_attractor, first), "first task that does", SOURCE),
+    COLUMN("found_lowest", NUMBERS(basin_attractor, lowest),
+           "state of it with the smallest observed number; of the first task", SOURCE, .axes = {"coordinate"}),
 };
 
 typedef struct sorting {

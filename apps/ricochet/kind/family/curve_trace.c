@@ -13,31 +13,23 @@ const char *const curve_outcome_names[CURVE_OUTCOMES] = {
 #define CURVE .source = "F(z, p) = 0"
 
 static const column end_columns[] = {
-    {.name = "curve_end_special",
-     INTEGER(curve_end, special),
-     .long_name = "special point of the task that the curve goes through",
-     CURVE},
-    {.name = "curve_end_part", INTEGER(curve_end, part), .long_name = "part of the curve", CURVE},
-    {.name = "curve_end_outcome", WORD(curve_end, outcome, curve_outcome_names), .long_name = "how it ended", CURVE},
-    {.name = "curve_end_reason",
-     TEXT(curve_end, reason, CURVE_REASON_BYTES),
-     .long_name = "why; empty when the outcome speaks for itself",
-     CURVE},
-    {.name = "curve_end_points", INTEGER(curve_end, points), .long_name = "number of its points", .source = "count"},
+    COLUMN("curve_end_special", INTEGER(curve_end, special), "special point of the task that the curve goes through",
+           CURVE),
+    COLUMN("curve_end_part", INTEGER(curve_end, part), "part of the curve", CURVE),
+    COLUMN("curve_end_outcome", WORD(curve_end, outcome, curve_outcome_names), "how it ended", CURVE),
+    COLUMN("curve_end_reason", TEXT(curve_end, reason, CURVE_REASON_BYTES),
+           "why; empty when the outcome speaks for itself", CURVE),
+    COLUMN("curve_end_points", INTEGER(curve_end, points), "number of its points", .source = "count"),
 };
 
 static const column point_columns[] = {
-    {.name = "curve_special",
-     INTEGER(curve_point, special),
-     .long_name = "special point of the task that the curve goes through",
-     CURVE},
-    {.name = "curve_part",
-     INTEGER(curve_point, part),
-     .long_name = "0: from there towards larger values of the second parameter, 1: towards smaller ones",
-     CURVE},
-    {.name = "curve_parameter", NUMBER(curve_point, parameter), .long_name = "the key that is followed", CURVE},
-    {.name = "curve_second", NUMBER(curve_point, second), .long_name = "the second key", CURVE},
-    {.name = "curve_period", NUMBER(curve_point, period), .long_name = "period", CURVE},
+    COLUMN("curve_special", INTEGER(curve_point, special), "special point of the task that the curve goes through",
+           CURVE),
+    COLUMN("curve_part", INTEGER(curve_point, part),
+           "0: from there towards larger values of the second parameter, 1: towards smaller ones", CURVE),
+    COLUMN("curve_parameter", NUMBER(curve_point, parameter), "the key that is followed", CURVE),
+    COLUMN("curve_second", NUMBER(curve_point, second), "the second key", CURVE),
+    COLUMN("curve_period", NUMBER(curve_point, period), "period", CURVE),
 };
 
 #define COUNT(columns) (sizeof(columns) / sizeof *(columns))

@@ -230,39 +230,26 @@ static ric_status find_all(search *s, bool critical, ric_error *error) {
 /* --- the table --- */
 
 static const column columns[] = {
-    {.name = "kind",
-     WORD(special, kind, special_names),
-     .long_name = "resonance of a mode, zero of the contact determinant, or where multipliers leave the circle or come "
-                  "back",
-     .source = "[JAP] (11)-(12), (16)"},
-    {.name = "parameter",
-     NUMBER(special, parameter),
-     .long_name = "value of the swept parameter",
-     .source = "[JAP] (11)-(12)"},
-    {.name = "outcome",
-     WORD(special, outcome, orbit_outcome_names),
-     .long_name = "outcome of the orbit exactly there",
-     .source = "[JAP] (9)"},
-    {.name = "mode", INTEGER(special, mode), .long_name = "resonant mode, else -1", .source = "[JAP] (12)"},
-    {.name = "harmonic",
-     INTEGER(special, harmonic),
-     .long_name = "oscillations of the mode per period, else 0",
-     .source = "[JAP] (12)"},
+    COLUMN("kind", WORD(special, kind, special_names),
+           "resonance of a mode, zero of the contact determinant, or where multipliers leave the circle or come back",
+           .source = "[JAP] (11)-(12), (16)"),
+    COLUMN("parameter", NUMBER(special, parameter), "value of the swept parameter", .source = "[JAP] (11)-(12)"),
+    COLUMN("outcome", WORD(special, outcome, orbit_outcome_names), "outcome of the orbit exactly there",
+           .source = "[JAP] (9)"),
+    COLUMN("mode", INTEGER(special, mode), "resonant mode, else -1", .source = "[JAP] (12)"),
+    COLUMN("harmonic", INTEGER(special, harmonic), "oscillations of the mode per period, else 0",
+           .source = "[JAP] (12)"),
 };
 
 static const column critical_columns[] = {
-    {.name = "multiplier",
-     COMPLEX(special, multiplier),
-     .long_name = "critical multiplier on the unit circle, in the upper half plane; NaN for other points",
-     .source = "[JAP] (16)"},
-    {.name = "change",
-     WORD(special, change, change_names),
-     .long_name = "way of the multipliers as the parameter grows",
-     .source = "[JAP] (16)"},
-    {.name = "uncertainty",
-     NUMBER(special, uncertainty),
-     .long_name = "of a critical parameter: half the width of its last bracket, or rounding; NaN for other points",
-     .source = "[JAP] (16)"},
+    COLUMN("multiplier", COMPLEX(special, multiplier),
+           "critical multiplier on the unit circle, in the upper half plane; NaN for other points",
+           .source = "[JAP] (16)"),
+    COLUMN("change", WORD(special, change, change_names), "way of the multipliers as the parameter grows",
+           .source = "[JAP] (16)"),
+    COLUMN("uncertainty", NUMBER(special, uncertainty),
+           "of a critical parameter: half the width of its last bracket, or rounding; NaN for other points",
+           .source = "[JAP] (16)"),
 };
 
 static void lay_out(table *t, bool critical) {
