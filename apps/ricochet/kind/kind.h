@@ -10,7 +10,6 @@
 #include <stdint.h>
 
 #include "study/study.h"
-#include "base/records.h"
 #include "base/table.h"
 
 enum { KIND_MOST_TAILS = 6, KIND_MOST_EXTRAS = 2 };

@@ -5,7 +5,54 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "trace.h"
+#include "kind/family/curve_trace.h"
+
+/* --- curves in two parameters --- */
+
+/* The special point that a curve goes through. */
+typedef struct curve_origin {
+  ric_family *family;
+  const ric_family_point *point;
+} curve_origin;
+
+/* Whether the study wants curves through special points of this kind. */
+static bool is_traced(const branch_family *b, ric_family_kind what) {
+  const char *words = schema_row(KEY_BRANCH_TRACE_KINDS)->words, *name = ric_family_kind_name(what);
+  const long place = schema_find_word(name, strlen(name), words);
+  for (size_t i = 0; b->traced && i < value_count(b->values, KEY_BRANCH_TRACE_KINDS); i++)
+    if (value_number(b->values, KEY_BRANCH_TRACE_KINDS, i) == (double)place)
+      return true;
+  return false;
+}
+
+static int add_curve_point(const ric_family_curve_point *point, void *user) {
+  curve_trace *t = user;
+  branch_curve_point found = {
+      .energy = point->orbit->energy, .outcome = (int)point->orbit->outcome, .iterations = point->iterations};
+  return curve_trace_add(t, point->parameter, point->second, point->orbit->period, &found.common);
+}
+
+static ric_status follow_curve(curve_trace *t, const ric_curve_options *options, void *user, ric_curve_run *run,
+                               ric_error *error) {
+  const curve_origin *from = user;
+  return ric_family_trace(from->family, from->point, options, NULL, add_curve_point, t, run, error);
+}
+
+/* The curve through a special point, both ways. @returns RIC_OK, RIC_ESTOPPED or RIC_ENOMEM */
+static ric_status trace_curve(branch_family *b, ric_family *family, const ric_family_point *point, long long special,
+                              const kind_plan *plan, records *tails, branch_result *result) {
+  curve_origin from = {family, point};
+  curve_trace t = {.b = b,
+                   .layout = &plan->tails[BRANCH_CURVES].records,
+                   .end_layout = &plan->tails[BRANCH_CURVE_ENDS].records,
+                   .points = &tails[BRANCH_CURVES],
+                   .ends = &tails[BRANCH_CURVE_ENDS],
+                   .special = special};
+  const ric_status status = curve_trace_follow(&t, follow_curve, &from);
+  result->iterations += t.iterations;
+  result->jacobians += t.jacobians;
+  return status;
+}
 
 /* Families meet at one point, which both may find: it is gone over once. Its numbers agree to this, relative to 1. */
 static const double same_point = 1e-6;
@@ -251,9 +298,9 @@ static void look_further(walk *w, const ric_family_point *point) {
 }
 
 static void trace(walk *w, const ric_family_point *point) {
-  if (w->status == RIC_OK && branch_trace_wanted(w->b, point->kind))
-    w->status = branch_trace(w->b, w->segments[w->current].family, point, (long long)w->specials - 1, w->plan, w->tails,
-                             w->result);
+  if (w->status == RIC_OK && is_traced(w->b, point->kind))
+    w->status = trace_curve(w->b, w->segments[w->current].family, point, (long long)w->specials - 1, w->plan, w->tails,
+                            w->result);
 }
 
 static int see(const ric_family_point *point, void *user) {

@@ -5,7 +5,7 @@
 #include <ricochet/ricochet.h>
 
 #include "study/study.h"
-#include "base/table.h"
+#include "kind/kind.h"
 
 /** Words of ric_outcome. */
 extern const char *const orbit_outcome_names[RIC_OUTCOME_COUNT];
@@ -38,5 +38,14 @@ void orbits_lay_out(const study_values *v, table *t);
 
 /** What every orbit has in its row, and what the verifier found of it; of the rest nothing. Borrows all of them. */
 orbits_row orbits_row_of(const ric_orbit *orbit, const char *reason, const ric_verification *verification);
+
+/* Resonances, singular points and critical parameters along the sweep of an `orbits` study: the table `special`. */
+
+/** Refuses `special_points: true` where the list would be too long. */
+int orbits_special_plan(const study *s, const study_values *v, message *why);
+
+/** The list, ordered by parameter; empty unless the study asks for it. */
+int orbits_special(const study *s, const kind_plan *plan, const row_source *done, ric_poll poll, extra_rows *extra,
+                   message *why);
 
 #endif

@@ -1,11 +1,10 @@
-#include "special.h"
+#include "orbits.h"
 
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
 
 #include "model/chain_model.h"
-#include "orbits.h"
 #include "stability.h"
 
 enum { MOST_POINTS = 100000 };

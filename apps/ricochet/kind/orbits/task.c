@@ -9,7 +9,6 @@
 #include "kind/kind.h"
 #include "kind/machine.h"
 #include "orbits.h"
-#include "special.h"
 #include "stability.h"
 #include "kind/trajectory/trajectory.h"
 

@@ -1,7 +1,6 @@
 #include <stdbool.h>
 #include <string.h>
 
-#include "convergence.h"
 #include "trajectory.h"
 
 static const char *const outcome_names[TRAJECTORY_OUTCOMES] = {

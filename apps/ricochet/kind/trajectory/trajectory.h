@@ -33,6 +33,12 @@ typedef struct event_record {
   double gap_rate, impulse, depth, accumulation;
 } event_record;
 
+/** A record: the exponents by a time. */
+typedef struct lyapunov_record {
+  double time;
+  const double *history;
+} lyapunov_record;
+
 /** What the sizes of rows and tails follow from. */
 typedef struct trajectory_shape {
   double particles, samples, exponents; /* exponents: 0 when they are not asked for */
