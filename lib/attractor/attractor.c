@@ -1,6 +1,10 @@
-#include "ricochet/attractor.h"
+/* What is said of attractors: names, defaults, and the period of iterates. */
+#include "attractor.h"
 
 #include <math.h>
+#include <stdbool.h>
+
+#include "ricochet/attractor.h"
 
 ric_attractor_options ric_attractor_options_default(void) {
   return (ric_attractor_options){
@@ -47,4 +51,114 @@ const char *ric_map_lanes_name(ric_map_lanes lanes) {
 #undef X
   };
   return (unsigned)lanes < RIC_MAP_LANES_KINDS ? names[lanes] : "unknown";
+}
+
+/* Not fmax, which is a call. */
+static double larger(double a, double b) {
+  return a > b ? a : b;
+}
+
+/* By how much a number differs at most. @param x  [count][stride] */
+static double extent_of(const double *x, size_t stride, size_t count, double *largest) {
+  double low = x[0], high = x[0];
+  for (size_t k = 1; k < count; k++) {
+    low = x[k * stride] < low ? x[k * stride] : low;
+    high = x[k * stride] > high ? x[k * stride] : high;
+  }
+  *largest = larger(*largest, larger(fabs(low), fabs(high)));
+  return high - low;
+}
+
+/* Whether one number is back within `near` after `period`, wherever it sets out. */
+static bool near_again(const double *x, size_t stride, size_t pairs, size_t period, double near) {
+  for (size_t k = 0; k < pairs; k++)
+    if (!(fabs(x[k * stride] - x[(k + period) * stride]) <= near))
+      return false;
+  return true;
+}
+
+/* Whether what one number is off after `period` grows: from the first to the last pairs, whole periods later, so that
+ * the same places of the cycle are compared. */
+static bool parts(const double *x, size_t stride, size_t pairs, size_t period, double noise) {
+  size_t whole = pairs / (2 * period), shift = (whole > 0 ? whole : 1) * period;
+  double first = 0, last = 0;
+  for (size_t k = 0; k + shift < pairs; k++) {
+    const double *y = x + (k + shift) * stride;
+    first = larger(first, fabs(x[k * stride] - x[(k + period) * stride]));
+    last = larger(last, fabs(y[0] - y[period * stride]));
+  }
+  return last > larger(first, noise);
+}
+
+/* States in a row, and what is known of them. */
+typedef struct row {
+  const double *states; /* [count][stride] */
+  size_t size, stride, count;
+  double tolerance, floor; /* differences below the floor are noise, in all numbers: they come from each other */
+} row;
+
+static double near_of(const row *r, size_t i) {
+  double largest = 0;
+  return larger(r->tolerance * extent_of(r->states + i, r->stride, r->count, &largest), r->floor);
+}
+
+static bool returns(const row *r, size_t period) {
+  size_t pairs = r->count - period;
+  for (size_t i = 0; i < r->size; i++) {
+    const double *x = r->states + i;
+    if (!near_again(x, r->stride, pairs, period, near_of(r, i)) || parts(x, r->stride, pairs, period, r->floor))
+      return false;
+  }
+  return true;
+}
+
+/* The largest difference of a number `lag` iterates later, from iterate `from` on. */
+static double lag_of(const row *r, size_t i, size_t lag, size_t from, size_t count) {
+  double most = 0;
+  for (size_t k = from; k < from + count; k++)
+    most = larger(most, fabs(r->states[k * r->stride + i] - r->states[(k + lag) * r->stride + i]));
+  return most;
+}
+
+/* Whether a number comes to a cycle of half the period: beside a flip it does so from both sides in turn, and slowly,
+ * and is back on the same side long before it is there. What is left of its difference after half the period is
+ * extrapolated, as it shrinks by the same factor as that after the whole one; at the flip itself, where it falls as the
+ * root of time, a third of it would go. */
+static bool comes_to_half(const row *r, size_t i, size_t period) {
+  const size_t shift = (r->count - period) / period * (period / 2), count = r->count - period - shift;
+  const double whole = lag_of(r, i, period, 0, count), shrunk = whole - lag_of(r, i, period, shift, count);
+  const double half = lag_of(r, i, period / 2, 0, count), fallen = half - lag_of(r, i, period / 2, shift, count);
+  if (half <= near_of(r, i))
+    return true;
+  return whole > r->floor && shrunk > 0 && fallen * whole > half / 4 * shrunk;
+}
+
+static bool halves(const row *r, size_t period) {
+  bool half = period % 2 == 0;
+  for (size_t i = 0; i < r->size && half; i++)
+    half = comes_to_half(r, i, period);
+  return half;
+}
+
+size_t period_find(const double *states, size_t size, size_t stride, size_t limit, double tolerance, double noise) {
+  double extent = 0, largest = 0;
+  for (size_t i = 0; i < size; i++)
+    extent = larger(extent, extent_of(states + i, stride, 2 * limit + 1, &largest));
+  if (!isfinite(extent))
+    return 0;
+  const row r = {states, size, stride, 2 * limit + 1, tolerance, noise * largest};
+  const double near = larger(tolerance * extent, r.floor);
+  for (size_t p = 1; p <= limit; p++)
+    if (near_again(states, stride, 2 * limit + 1 - p, p, near) && /* at once where there is none */
+        returns(&r, p))
+      return halves(&r, p) ? p / 2 : p;
+  return 0;
+}
+
+size_t period_lowest(const double *states, size_t stride, size_t count, size_t observe) {
+  size_t lowest = 0;
+  for (size_t k = 1; k < count; k++)
+    if (states[k * stride + observe] < states[lowest * stride + observe])
+      lowest = k;
+  return lowest;
 }

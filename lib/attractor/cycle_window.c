@@ -9,7 +9,7 @@
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_roots.h>
 
-#include "cycle_curve.h"
+#include "cycle_equations.h"
 
 enum { MOST_STEPS = 100000, MOST_TRIALS = 200 };
 
@@ -53,7 +53,7 @@ typedef struct walk {
 
 /* --- life --------------------------------------------------------------------------------------------------------- */
 
-static ric_status allocate(walk *w, ric_error *error) {
+static ric_status allocate_walk(walk *w, ric_error *error) {
   size_t size = w->curve.size, each = 2 * size + w->tests;
   cycle_point *points[] = {&w->from, &w->before, &w->here, &w->next, &w->trial};
   w->root = gsl_root_fsolver_alloc(gsl_root_fsolver_brent);
@@ -73,7 +73,7 @@ static ric_status walk_init(walk *w, const ric_map_line *line, double p, size_t 
   *w = (walk){.tests = TEST_ITERATES + period, .error = error};
   RIC_TRY(cycle_equations_init(&w->equations, line, p, period, z, error));
   RIC_TRY(cycle_curve_init(&w->curve, &w->equations, p, step, error));
-  return allocate(w, error);
+  return allocate_walk(w, error);
 }
 
 static void walk_clear(walk *w) {
@@ -97,7 +97,7 @@ static double parameter_of(const walk *w, const cycle_point *a) {
 /* --- the tests ---------------------------------------------------------------------------------------------------- */
 
 /* At a solution with its tangent, the map being that of its parameter. Multipliers are infinite at y = 0. */
-static ric_status look(walk *w, cycle_point *a, ric_error *error) {
+static ric_status evaluate_point(walk *w, cycle_point *a, ric_error *error) {
   cycle_equations_at(&w->equations, a->x, w->curve.beside, NULL, 0, a->tests + TEST_ITERATES);
   ric_status status = cycle_equations_spectrum(&w->equations, a->x, error);
   double largest = w->equations.multipliers.largest;
@@ -131,7 +131,7 @@ static ric_status start(walk *w, double p, double *z, ric_cycle_window *window, 
   a->x[w->curve.size - 1] = p;
   cycle_curve_measure(&w->curve, a->x);
   RIC_TRY(cycle_curve_correct(&w->curve, a->x, NULL, NULL, error));
-  RIC_TRY(look(w, a, error));
+  RIC_TRY(evaluate_point(w, a, error));
   RIC_TRY(check_found(w, a, error));
   memcpy(z, a->x, w->equations.map.size * sizeof *z);
   const bool known = a->tests[TEST_MULTIPLIERS] > -1;
@@ -158,7 +158,7 @@ ric_status ric_cycle_find(const ric_map_line *line, double p, size_t period, dou
 /* --- a step ------------------------------------------------------------------------------------------------------- */
 
 /* The next point `length` ahead, or, where that is beyond it, at the bound. */
-static ric_status go(walk *w, double length, double bound, bool *good, ric_error *error) {
+static ric_status step_to(walk *w, double length, double bound, bool *good, ric_error *error) {
   cycle_curve *c = &w->curve;
   const size_t last = c->size - 1;
   const double rate = w->here.tangent[last], left = (bound - w->here.x[last]) / rate;
@@ -172,7 +172,7 @@ static ric_status go(walk *w, double length, double bound, bool *good, ric_error
     w->next.x[last] = bound;
   RIC_TRY(cycle_curve_correct(c, w->next.x, ends ? NULL : w->row, &moved, error));
   RIC_TRY(cycle_curve_tangent(c, w->next.x, w->row, w->next.tangent, error));
-  RIC_TRY(look(w, &w->next, error));
+  RIC_TRY(evaluate_point(w, &w->next, error));
   w->next.place = 0;
   for (size_t i = 0; i <= last; i++)
     w->next.place += w->row[i] * (w->next.x[i] - w->here.x[i]);
@@ -232,7 +232,7 @@ static ric_status step(walk *w, double *length, double bound, ric_error *error) 
     bool good = false;
     if (ric_poll_stops(w->poll))
       return ric_fail(error, RIC_ESTOPPED, "stopped at p = %.9g", parameter_of(w, &w->here));
-    ric_status status = go(w, *length, bound, &good, error);
+    ric_status status = step_to(w, *length, bound, &good, error);
     if (status != RIC_OK && status != RIC_ENUMERIC && status != RIC_EINVAL)
       return status;
     const double better = wanted(w, *length, status == RIC_OK && good);
@@ -256,7 +256,7 @@ static ric_status try_place(walk *w, double place) {
   RIC_TRY(cycle_curve_correct(&w->curve, w->trial.x, w->row, NULL, w->error));
   RIC_TRY(cycle_curve_tangent(&w->curve, w->trial.x, w->row, w->trial.tangent, w->error));
   w->trial.place = place;
-  return look(w, &w->trial, w->error);
+  return evaluate_point(w, &w->trial, w->error);
 }
 
 static double test_at(double place, void *user) {

@@ -7,9 +7,10 @@
 
 #include <gsl/gsl_errno.h>
 
-#include "map_block.h"
-#include "orthonormal.h"
-#include "period.h"
+#include "attractor.h"
+#include "map_kernels.h"
+#include "numeric/linear.h"
+#include "numeric/number_block.h"
 
 enum {
   PIECE = 16,  /* iterates at a time: their states stay near the processor */
@@ -58,13 +59,7 @@ ric_map_lanes ric_map_lanes_widest(void) {
   return (ric_map_lanes)lanes;
 }
 
-static double *take(double **store, size_t count) {
-  double *taken = *store;
-  *store += count;
-  return taken;
-}
-
-static ric_status allocate(ric_map_runner *r, size_t size, ric_error *error) {
+static ric_status allocate_runner(ric_map_runner *r, size_t size, ric_error *error) {
   const ric_attractor_options *o = &r->options;
   size_t width = r->kernel.width, state = size * width, longest = 2 * o->period_limit;
   RIC_TRY(map_block_init(&r->block, size, width, o->exponents, error));
@@ -76,13 +71,13 @@ static ric_status allocate(ric_map_runner *r, size_t size, ric_error *error) {
   r->cycle = calloc(width, sizeof *r->cycle);
   if (!store || !r->lost || !r->cycle)
     return ric_fail(error, RIC_ENOMEM, "no memory for %zu iterates of %zu maps of size %zu", longest, width, size);
-  r->trace = take(&store, (longest + 1) * state);
-  r->sound = take(&store, state);
-  r->measured = take(&store, state);
-  r->impacts = take(&store, width);
-  r->length = take(&store, o->exponents * width);
-  r->orbit = take(&store, (longest + 1) * size);
-  r->directions = take(&store, o->exponents * size);
+  r->trace = number_store_take(&store, (longest + 1) * state);
+  r->sound = number_store_take(&store, state);
+  r->measured = number_store_take(&store, state);
+  r->impacts = number_store_take(&store, width);
+  r->length = number_store_take(&store, o->exponents * width);
+  r->orbit = number_store_take(&store, (longest + 1) * size);
+  r->directions = number_store_take(&store, o->exponents * size);
   return RIC_OK;
 }
 
@@ -123,7 +118,7 @@ ric_status ric_map_runner_create(size_t size, const ric_attractor_options *optio
   size_t fit = 4096 / (size * (1 + o.exponents)) / size; /* a piece is not long, that the poll is asked in time */
   r->piece = fit < 1 ? 1 : fit < PIECE ? fit : PIECE;
   gsl_error_handler_t *handler = gsl_set_error_handler_off();
-  ric_status status = allocate(r, size, error);
+  ric_status status = allocate_runner(r, size, error);
   if (status == RIC_OK)
     status = set_directions(r, error);
   gsl_set_error_handler(handler);
@@ -222,7 +217,7 @@ static bool lane_within(const ric_map_runner *r, const double *state, size_t lan
 }
 
 /* Looks whether maps have diverged. */
-static void look(ric_map_runner *r, double *state) {
+static void find_diverged(ric_map_runner *r, double *state) {
   size_t width = r->block.width, numbers = r->block.size * width, first = r->options.transient;
   if (!all_within(state, numbers, r->options.bound))
     for (size_t l = 0; l < width; l++)
@@ -243,7 +238,7 @@ static size_t least(size_t a, size_t b) {
 }
 
 /* Goes on from a state in the trace, at most to the next look. @returns RIC_ESTOPPED */
-static ric_status go(ric_map_runner *r, double *state, size_t count, ric_error *error) {
+static ric_status run_on(ric_map_runner *r, double *state, size_t count, ric_error *error) {
   size_t size = r->block.size;
   r->kernel.advance(&r->block, state, count);
   r->work += count * size * r->block.width * (size + 1) * (1 + r->block.vectors);
@@ -259,12 +254,12 @@ static ric_status advance(ric_map_runner *r, size_t until, bool keeps, ric_error
   while (r->done < until && r->left > 0) {
     size_t count = least(least(r->piece, until - r->done), LOOK - r->done % LOOK);
     double *last = r->trace + count * state;
-    RIC_TRY(go(r, r->trace, count, error));
+    RIC_TRY(run_on(r, r->trace, count, error));
     if (keeps)
       store(r, r->trace + state, count);
     r->done += count;
     if (r->done % LOOK == 0 || r->done == until)
-      look(r, last);
+      find_diverged(r, last);
     memcpy(r->trace, last, state * sizeof *last);
   }
   return RIC_OK;
@@ -276,11 +271,11 @@ static ric_status record(ric_map_runner *r, size_t count, ric_error *error) {
   double *at = r->trace;
   for (size_t until = r->done + count; r->done < until && r->left > 0;) {
     size_t next = least(least(r->piece, until - r->done), LOOK - r->done % LOOK);
-    RIC_TRY(go(r, at, next, error));
+    RIC_TRY(run_on(r, at, next, error));
     r->done += next;
     at += next * state;
     if (r->done % LOOK == 0 || r->done == until)
-      look(r, at);
+      find_diverged(r, at);
   }
   return RIC_OK;
 }
@@ -313,7 +308,7 @@ static bool skip(ric_map_runner *r, size_t until) {
     for (size_t i = 0; i < size; i++)
       r->trace[i * width + l] = r->trace[(ahead % r->cycle[l] * size + i) * width + l];
   r->done = until;
-  look(r, r->trace);
+  find_diverged(r, r->trace);
   return true;
 }
 
@@ -415,8 +410,8 @@ static ric_status run_block(ric_map_runner *r, ric_error *error) {
   return RIC_OK;
 }
 
-static ric_status check(const ric_map_runner *r, size_t i, const ric_grazing_map *map, double d, const ric_attractor *a,
-                        ric_error *error) {
+static ric_status check_run(const ric_map_runner *r, size_t i, const ric_grazing_map *map, double d,
+                            const ric_attractor *a, ric_error *error) {
   size_t size = r->block.size;
   ric_error inner;
   if (map->size != size)
@@ -434,7 +429,7 @@ static ric_status check(const ric_map_runner *r, size_t i, const ric_grazing_map
 ric_status ric_map_runner_run(ric_map_runner *r, size_t count, const ric_grazing_map *const *maps, const double *d,
                               ric_attractor *attractors, ric_error *error) {
   for (size_t i = 0; i < count; i++)
-    RIC_TRY(check(r, i, maps[i], d[i], &attractors[i], error));
+    RIC_TRY(check_run(r, i, maps[i], d[i], &attractors[i], error));
   for (size_t first = 0; first < count; first += r->block.width) {
     begin(r, maps + first, d + first, attractors + first, least(count - first, r->block.width));
     RIC_TRY(run_block(r, error));

@@ -1,14 +1,211 @@
-#include "ricochet/motion_section.h"
-
+/* The attractor of a motion on a section: its crossings, some at a time, and the run over them. */
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "crossings.h"
-#include "impact/trajectory_state.h"
-#include "period.h"
+#include "attractor.h"
+#include "floquet/lyapunov.h"
+#include "impact/trajectory.h"
+#include "numeric/constants.h"
+#include "ricochet/motion_section.h"
+
+/* Crossings of a motion with a section, some at a time.
+ *
+ * Stroboscopic states are read off the segments of the motion, so that steps go on across them; impacts come from the
+ * events. Every CROSSINGS_MOST crossings, or where a caller asks for fewer, the run ends. There the clock goes back by
+ * whole periods where the system says that its forces repeat after one: the phase of the forcing has the digits of a
+ * time below CROSSINGS_MOST periods, however long the motion is. What is found follows from the start, the options and
+ * the numbers asked for. */
+
+typedef struct crossings {
+  ric_motion_section_options options;
+  const ric_system *system;
+  ric_trajectory *trajectory;
+  lyapunov_course *course; /* NULL: no tangent vectors. Set to NULL when they are lost */
+  size_t n, m, size;       /* of a state on the section */
+  double *store;           /* all arrays */
+  double *states;          /* [found][size] those of the last call, CROSSINGS_MOST at most */
+  size_t found;
+  unsigned long long impacts; /* of all obstacles, since the caller set it */
+
+  ric_sampler sampler;
+  double *times; /* [CROSSINGS_MOST] of stroboscopic crossings */
+  size_t wanted; /* impacts */
+  size_t done;   /* periods on the clock at the start of a call */
+  bool pending;  /* the state after an impact is yet to be read */
+  double last;   /* time of the last impact, or of the start */
+} crossings;
+
+enum { CROSSINGS_MOST = 64 };
+
+static bool at_impacts(const crossings *c) {
+  return c->options.kind == RIC_SECTION_IMPACT;
+}
+
+/** @param options  in range */
+static ric_status crossings_init(crossings *c, const ric_system *system, const ric_motion_section_options *options,
+                                 ric_error *error) {
+  *c = (crossings){.options = *options, .system = system, .n = system->coordinates, .m = system->speeds};
+  c->size = c->n + c->m + (at_impacts(c) && options->period > 0 ? 1 : 0);
+  RIC_TRY(ric_trajectory_create(system, &options->trajectory, &c->trajectory, error));
+  c->store = malloc(CROSSINGS_MOST * (c->size + c->n + c->m + 1) * sizeof *c->store);
+  if (!c->store)
+    return ric_fail(error, RIC_ENOMEM, "no memory for states of %zu numbers on a section", c->size);
+  c->states = c->store;
+  c->times = c->states + CROSSINGS_MOST * c->size;
+  c->sampler = (ric_sampler){.times = c->times, .coordinates = c->n, .speeds = c->m};
+  c->sampler.q = c->times + CROSSINGS_MOST;
+  c->sampler.u = c->sampler.q + CROSSINGS_MOST * c->n;
+  return RIC_OK;
+}
+
+static void crossings_clear(crossings *c) {
+  ric_trajectory_destroy(&c->trajectory);
+  free(c->store);
+  *c = (crossings){0};
+}
+
+/* Where the forcing is, in [0, T). */
+static double remainder_of(double t, double period) {
+  double left = fmod(t, period);
+  return left < 0 ? left + period : left;
+}
+
+/** Starts a motion at a state of the section's form. @returns as ric_trajectory_start */
+static ric_status crossings_start(crossings *c, const double *z, ric_error *error) {
+  double t = c->size > c->n + c->m ? z[c->n + c->m] : at_impacts(c) ? 0 : c->options.phase * c->options.period;
+  RIC_TRY(ric_trajectory_start(c->trajectory, t, z, c->m ? z + c->n : NULL, error));
+  c->last = t;
+  c->done = 0;
+  c->pending = false;
+  return RIC_OK;
+}
+
+/* --- what is seen of the motion ----------------------------------------------------------------------------------- */
+
+static void put_state(crossings *c, size_t k, const double *q, const double *u) {
+  double *z = c->states + k * c->size;
+  memcpy(z, q, c->n * sizeof *z);
+  if (c->m)
+    memcpy(z + c->n, u, c->m * sizeof *z);
+}
+
+/* The state after an impact is that at the start of the next step: all that happens at its time is done. */
+static void take_pending(crossings *c) {
+  if (!c->pending)
+    return;
+  c->pending = false;
+  put_state(c, c->found, ric_trajectory_q(c->trajectory), ric_trajectory_u(c->trajectory));
+  if (c->size > c->n + c->m)
+    c->states[c->found * c->size + c->n + c->m] = remainder_of(c->last, c->options.period);
+  c->found++;
+}
+
+static int see_segment(const ric_segment *piece, double end, void *user) {
+  crossings *c = user;
+  if (!at_impacts(c))
+    return ric_sampler_segment(piece, end, &c->sampler);
+  take_pending(c);
+  return 0;
+}
+
+static int see_event(const ric_event *event, void *user) {
+  crossings *c = user;
+  if (!ric_event_jumps(event))
+    return 0;
+  c->impacts++;
+  if (!at_impacts(c) || (c->options.obstacle != SIZE_MAX && c->options.obstacle != event->obstacle))
+    return 0;
+  c->pending = true;
+  c->last = event->time;
+  return c->found + 1 >= c->wanted;
+}
+
+/* --- running ------------------------------------------------------------------------------------------------------ */
+
+static bool loses_vectors(const ric_run *run) {
+  return run->outcome == RIC_RUN_GRAZING || run->outcome == RIC_RUN_NOT_DIFFERENTIABLE;
+}
+
+/* Runs on, without the tangent vectors from where they are lost. */
+static ric_status run_to(crossings *c, double end, ric_run *run, ric_error *error) {
+  const ric_observer observer = {.segment = see_segment, .event = see_event, .user = c};
+  if (c->course) {
+    c->course->options.observer = &observer;
+    ric_status status = lyapunov_course_run(c->course, end, run, error);
+    c->course->options.observer = NULL;
+    if (status != RIC_OK || !loses_vectors(run))
+      return status;
+    c->course = NULL;
+    if (c->pending && c->found + 1 >= c->wanted) { /* the observer's end came with it */
+      run->outcome = RIC_RUN_ENDED;
+      return RIC_OK;
+    }
+  }
+  return ric_trajectory_run(c->trajectory, end, &observer, run, error);
+}
+
+static ric_status next_strobes(crossings *c, size_t count, ric_run *run, ric_error *error) {
+  for (size_t k = 0; k < count; k++)
+    c->times[k] = (c->options.phase + (double)(c->done + k + 1)) * c->options.period;
+  c->sampler.count = count;
+  c->sampler.next = 0;
+  RIC_TRY(run_to(c, c->times[count - 1], run, error));
+  ric_sampler_finish(&c->sampler, c->trajectory);
+  c->found = c->sampler.next;
+  for (size_t k = 0; k < c->found; k++)
+    put_state(c, k, c->sampler.q + k * c->n, c->sampler.u + k * c->m);
+  c->done += count;
+  return RIC_OK;
+}
+
+/* Runs that end without the last of the impacts go on as long as each of them has seen one. */
+static ric_status next_impacts(crossings *c, size_t count, ric_run *run, ric_error *error) {
+  c->found = 0;
+  c->wanted = count;
+  do {
+    double end = c->last + c->options.wait;
+    RIC_TRY(run_to(c, end, run, error));
+    take_pending(c);
+    if (run->outcome == RIC_RUN_COMPLETED && !(c->last + c->options.wait > end))
+      return snprintf(run->reason, sizeof run->reason, "no impact for %g", c->options.wait), RIC_OK;
+  } while (run->outcome == RIC_RUN_COMPLETED);
+  if (run->outcome == RIC_RUN_ENDED)
+    run->outcome = RIC_RUN_COMPLETED;
+  return RIC_OK;
+}
+
+/* Whether the clock may go back; not where nobody knows what the forces do. */
+static bool clock_turns(const crossings *c) {
+  const system_model *model = c->system->model;
+  if (c->options.period > 0)
+    return model->repeats && model->repeats(c->system, c->options.period);
+  return model->forced && !model->forced(c->system);
+}
+
+static ric_status turn_clock(crossings *c, ric_error *error) {
+  double period = c->options.period, t = ric_trajectory_time(c->trajectory), early = 0;
+  if (!clock_turns(c))
+    return RIC_OK;
+  if (!at_impacts(c))
+    early = c->options.phase * period;
+  else if (period > 0)
+    early = remainder_of(t, period);
+  c->done = 0;
+  c->last += early - t;
+  return trajectory_set_clock(c->trajectory, early, error);
+}
+
+/** The next crossings.
+ *  @param count  1 to CROSSINGS_MOST
+ *  @param run  outcome and reason; `completed` when all were found
+ *  @returns as ric_trajectory_run */
+static ric_status crossings_next(crossings *c, size_t count, ric_run *run, ric_error *error) {
+  RIC_TRY(at_impacts(c) ? next_impacts(c, count, run, error) : next_strobes(c, count, run, error));
+  return c->found == count ? turn_clock(c, error) : RIC_OK;
+}
 
 /* Iterates before the measured ones over which tangent vectors turn to where they belong. */
 enum { ALIGNING = 64 };
@@ -46,7 +243,7 @@ static ric_status check_obstacle(const ric_system *system, const ric_motion_sect
   return RIC_OK;
 }
 
-static ric_status check(const ric_system *system, const ric_motion_section_options *o, ric_error *error) {
+static ric_status check_section(const ric_system *system, const ric_motion_section_options *o, ric_error *error) {
   if (o->kind != RIC_SECTION_STROBE && o->kind != RIC_SECTION_IMPACT)
     return ric_fail(error, RIC_EINVAL, "section = %d, expected strobe or impact", (int)o->kind);
   RIC_TRY(check_period(o, error));
@@ -57,20 +254,6 @@ static ric_status check(const ric_system *system, const ric_motion_section_optio
   return RIC_OK;
 }
 
-ric_status ric_motion_section_create(const ric_system *system, const ric_motion_section_options *options,
-                                     ric_motion_section **section, ric_error *error) {
-  *section = NULL;
-  RIC_TRY(check(system, options, error));
-  ric_motion_section *s = calloc(1, sizeof *s);
-  if (!s)
-    return ric_fail(error, RIC_ENOMEM, "no memory for a section of motions");
-  ric_status status = crossings_init(&s->crossings, system, options, error);
-  if (status != RIC_OK)
-    ric_motion_section_destroy(&s);
-  *section = s;
-  return status;
-}
-
 void ric_motion_section_destroy(ric_motion_section **section) {
   if (!section || !*section)
     return;
@@ -79,6 +262,20 @@ void ric_motion_section_destroy(ric_motion_section **section) {
   free((*section)->window);
   free(*section);
   *section = NULL;
+}
+
+ric_status ric_motion_section_create(const ric_system *system, const ric_motion_section_options *options,
+                                     ric_motion_section **section, ric_error *error) {
+  *section = NULL;
+  RIC_TRY(check_section(system, options, error));
+  ric_motion_section *s = calloc(1, sizeof *s);
+  if (!s)
+    return ric_fail(error, RIC_ENOMEM, "no memory for a section of motions");
+  ric_status status = crossings_init(&s->crossings, system, options, error);
+  if (status != RIC_OK)
+    ric_motion_section_destroy(&s);
+  *section = s;
+  return status;
 }
 
 size_t ric_motion_section_size(const ric_motion_section *section) {
@@ -116,7 +313,7 @@ static void put_in_window(const journey *j, const double *z, size_t k) {
   size_t numbers = c->n + c->m;
   memcpy(row, z, numbers * sizeof *row);
   if (c->size > numbers) {
-    double radius = c->options.period / 6.28318530717958647692;
+    double radius = c->options.period / two_pi;
     row[numbers] = radius * cos(z[numbers] / radius);
     row[numbers + 1] = radius * sin(z[numbers] / radius);
   }
@@ -127,7 +324,7 @@ static double *last_of(const journey *j) {
   return j->section->window + (2 * j->options->period_limit + 1) * j->width;
 }
 
-static void take(journey *j, const double *z) {
+static void record_state(journey *j, const double *z) {
   const ric_attractor_options *o = j->options;
   ric_attractor *a = j->attractor;
   size_t size = j->section->crossings.size, measured = o->transient + o->measure;
@@ -172,7 +369,7 @@ static void take_all(journey *j) {
         end(j, RIC_ATTRACTOR_DIVERGED, reason);
         return;
       }
-    take(j, z);
+    record_state(j, z);
   }
 }
 

@@ -1,11 +1,131 @@
-#include "ricochet/motion_window.h"
-
+/* Windows of periodic motions along a parameter: the motion of a run, shooting, and what ends the window. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "motion_record.h"
+#include "ricochet/family.h"
+#include "ricochet/motion_window.h"
+
+/* What shooting needs to know of a forced motion on its attractor. */
+
+/** A motion over its period. */
+typedef struct motion_record {
+  size_t count;     /* impacts */
+  size_t *sequence; /* [count] their obstacles */
+  double *times;    /* [count] increasing, the first one in [0, period) */
+  double *q, *u;    /* [n], [m] after the first impact; without impacts at t = 0 */
+} motion_record;
+
+/* What the observer of a run does. */
+typedef struct listener {
+  motion_record *record;
+  size_t seen;
+  bool keeps;         /* writes them down, else counts */
+  bool ends_at_first; /* the run at the first impact */
+  const char *what;   /* there is no motion for shooting: why, and when; NULL */
+  double when;
+} listener;
+
+static int hear(const ric_event *event, void *user) {
+  listener *l = user;
+  if (event->kind == RIC_EVENT_CHATTER || event->kind == RIC_EVENT_REST || event->kind == RIC_EVENT_RELEASE) {
+    l->what = ric_event_name(event->kind);
+    l->when = event->time;
+    return 1;
+  }
+  if (!ric_event_jumps(event))
+    return 0;
+  if (l->keeps) {
+    l->record->sequence[l->seen] = event->obstacle;
+    l->record->times[l->seen] = event->time;
+  }
+  l->seen++;
+  return l->ends_at_first;
+}
+
+static ric_status run_to(ric_trajectory *trajectory, double end, listener *l, ric_error *error) {
+  const ric_observer observer = {.event = hear, .user = l};
+  ric_run run;
+  RIC_TRY(ric_trajectory_run(trajectory, end, &observer, &run, error));
+  if (l->what)
+    return ric_fail(error, RIC_ENUMERIC, "%s at t = %.9g: no motion with impacts one by one", l->what, l->when);
+  if (run.outcome == RIC_RUN_COMPLETED || (run.outcome == RIC_RUN_ENDED && l->ends_at_first))
+    return RIC_OK;
+  return ric_fail(error, RIC_ENUMERIC, "the motion stops at t = %.9g: %s %.150s", run.time,
+                  ric_run_outcome_name(run.outcome), run.reason);
+}
+
+static void keep_state(motion_record *record, const ric_trajectory *trajectory, const ric_system *system) {
+  memcpy(record->q, ric_trajectory_q(trajectory), ric_system_coordinates(system) * sizeof *record->q);
+  if (ric_system_speeds(system) > 0)
+    memcpy(record->u, ric_trajectory_u(trajectory), ric_system_speeds(system) * sizeof *record->u);
+}
+
+static ric_status allocate_record(motion_record *record, const ric_system *system, ric_error *error) {
+  record->sequence = calloc(record->count + 1, sizeof *record->sequence);
+  record->times = calloc(record->count + 1, sizeof *record->times);
+  record->q = calloc(ric_system_coordinates(system), sizeof *record->q);
+  record->u = calloc(ric_system_speeds(system) + 1, sizeof *record->u);
+  if (record->sequence && record->times && record->q && record->u)
+    return RIC_OK;
+  return ric_fail(error, RIC_ENOMEM, "no memory for a motion with %zu impacts", record->count);
+}
+
+/* Time counts from the beginning of the period in which the first impact is. */
+static void fold_times(motion_record *record, double period) {
+  const double origin = floor(record->times[0] / period) * period;
+  for (size_t k = 0; k < record->count; k++)
+    record->times[k] -= origin;
+}
+
+/* First the impacts are counted, then written down: runs do the same thing each time. */
+static ric_status record_motion(motion_record *record, ric_trajectory *trajectory, const ric_system *system,
+                                double period, double t, const double *q, const double *u, ric_error *error) {
+  listener counter = {.record = record}, writer = {.record = record, .keeps = true, .ends_at_first = true};
+  RIC_TRY(ric_trajectory_start(trajectory, t, q, u, error));
+  RIC_TRY(run_to(trajectory, t + period, &counter, error));
+  record->count = counter.seen;
+  RIC_TRY(allocate_record(record, system, error));
+  RIC_TRY(ric_trajectory_start(trajectory, t, q, u, error));
+  if (record->count == 0) {
+    RIC_TRY(run_to(trajectory, ceil(t / period) * period, &counter, error));
+    keep_state(record, trajectory, system);
+    return RIC_OK;
+  }
+  RIC_TRY(run_to(trajectory, t + period, &writer, error));
+  keep_state(record, trajectory, system);
+  writer.ends_at_first = false;
+  RIC_TRY(run_to(trajectory, t + period, &writer, error));
+  fold_times(record, period);
+  return RIC_OK;
+}
+
+/** Runs it from (t, q, u) over a period.
+ *  @param motion  options of the flow and the poll of its runs
+ *  @returns RIC_ENUMERIC for a run that does not get there, for impacts that accumulate and contacts that last; as
+ *           ric_trajectory_create, _start, _run; RIC_ENOMEM; always to be cleared */
+static ric_status motion_record_take(motion_record *record, const ric_system *system,
+                                     const ric_shooting_problem *motion, double period, double t, const double *q,
+                                     const double *u, ric_error *error) {
+  ric_trajectory_options options = ric_trajectory_options_default();
+  ric_trajectory *trajectory = NULL;
+  *record = (motion_record){0};
+  options.flow = motion->flow;
+  options.poll = motion->poll;
+  RIC_TRY(ric_trajectory_create(system, &options, &trajectory, error));
+  ric_status status = record_motion(record, trajectory, system, period, t, q, u, error);
+  ric_trajectory_destroy(&trajectory);
+  return status;
+}
+
+static void motion_record_clear(motion_record *record) {
+  free(record->sequence);
+  free(record->times);
+  free(record->q);
+  free(record->u);
+  *record = (motion_record){0};
+}
 
 enum { MOST_TRIES = 5 };
 
@@ -44,8 +164,8 @@ static ric_status set_scaled(ric_system *system, const double *parameters, doubl
 
 /* --- the motion --------------------------------------------------------------------------------------------------- */
 
-static ric_status check(const ric_family_problem *problem, size_t periods, double p, double low, double high, double t,
-                        ric_error *error) {
+static ric_status check_window(const ric_family_problem *problem, size_t periods, double p, double low, double high,
+                               double t, ric_error *error) {
   if (problem->motion.kind != RIC_MOTION_FORCED)
     return ric_fail(error, RIC_EINVAL, "motion.kind = %d, expected forced motions", (int)problem->motion.kind);
   if (periods < 1)
@@ -193,7 +313,7 @@ static int see_start(walk *w, const ric_family_point *point) {
 }
 
 /* Of the points that follow, verdicts next to an edge may be undecided. */
-static int see(const ric_family_point *point, void *user) {
+static int see_window_point(const ric_family_point *point, void *user) {
   walk *w = user;
   search *s = w->s;
   w->edge = (ric_motion_edge){.kind = point->kind, .p = point->parameter * s->scale};
@@ -214,7 +334,7 @@ static ric_status follow(search *s, walk *w, const ric_family_options *options, 
   ric_curve_run run;
   w->found = w->late = false;
   RIC_TRY(ric_family_create(&s->scaled, options, &family, error));
-  ric_status status = ric_family_follow(family, s->last, s->last_at, NULL, see, w, &run, error);
+  ric_status status = ric_family_follow(family, s->last, s->last_at, NULL, see_window_point, w, &run, error);
   ric_family_destroy(&family);
   RIC_TRY(status);
   if (!s->window.stable)
@@ -266,7 +386,7 @@ ric_status ric_motion_window_find(const ric_family_problem *problem, size_t peri
                                   double t, const double *q, const double *u, const ric_family_options *options,
                                   ric_motion_window *window, ric_error *error) {
   search s = {.problem = problem, .periods = periods, .p = p, .low = low, .high = high};
-  RIC_TRY(check(problem, periods, p, low, high, t, error));
+  RIC_TRY(check_window(problem, periods, p, low, high, t, error));
   set_up(&s, options);
   ric_status status = find_window(&s, t, q, u, error);
   if (status == RIC_OK)

@@ -1,11 +1,110 @@
-#include "ricochet/family.h"
+/* Families of motions: the equations of shooting along a parameter, and how a family is followed. */
+#include "family.h"
 
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "family_parts.h"
+#include "ricochet/family.h"
+
+/* The walk along a family. */
+
+/* A walk with the caller's callback. */
+typedef struct follower {
+  ric_family *f;
+  int (*point)(const ric_family_point *point, void *user);
+  void *user;
+  ric_curve_run *run;
+  ric_status status; /* of a look that failed in the callback */
+  ric_error *error;
+} follower;
+
+static ric_family_kind kind_of(ric_curve_point_kind kind) {
+  switch (kind) {
+  case RIC_CURVE_FOLD:
+    return RIC_FAMILY_FOLD;
+  case RIC_CURVE_BRANCH_POINT:
+    return RIC_FAMILY_BRANCH_POINT;
+  case RIC_CURVE_REGULAR:
+  case RIC_CURVE_TEST:
+  case RIC_CURVE_POINT_KINDS:
+    break;
+  }
+  return RIC_FAMILY_REGULAR;
+}
+
+/* --- parameters --------------------------------------------------------------------------------------------------- */
+
+ric_status family_set(ric_family *f, double first, double second, ric_error *error) {
+  const ric_family_problem *p = &f->problem;
+  if (f->at[0] == first && f->at[1] == second)
+    return RIC_OK;
+  f->at[0] = f->at[1] = NAN;
+  const double both[2] = {first, second};
+  f->given = p->set ? p->given : first;
+  if (p->set)
+    RIC_TRY(p->set(p->system, both, &f->given, p->user, error));
+  if (p->set && p->periods > 1 && !p->motion.energy_given)
+    f->given *= (double)p->periods;
+  f->at[0] = first;
+  f->at[1] = second;
+  return RIC_OK;
+}
+
+void family_forget(ric_family *f) {
+  f->at[0] = f->at[1] = f->seen_at[0] = f->seen_at[1] = NAN;
+}
+
+static int show(const ric_curve_point *c, void *user) {
+  follower *w = user;
+  ric_family *f = w->f;
+  ric_family_point point = {.kind = kind_of(c->kind),
+                            .parameter = c->p,
+                            .unknowns = f->unknowns,
+                            .z = c->u,
+                            .tangent = c->t_u, /* t_p follows */
+                            .orbit = &f->orbit,
+                            .multipliers = f->options.multipliers ? &f->multipliers : NULL,
+                            .obstacle = SIZE_MAX,
+                            .time = NAN,
+                            .arclength = c->arclength,
+                            .step = c->step,
+                            .iterations = c->iterations};
+  w->status = family_set(f, c->p, f->problem.second, w->error);
+  if (w->status == RIC_OK)
+    w->status = family_look(f, c->u, w->error);
+  if (w->status != RIC_OK)
+    return 1;
+  point.given = f->given;
+  if (c->kind == RIC_CURVE_TEST) {
+    family_name_zero(f, c->u, c->which, &point);
+    if (point.kind == RIC_FAMILY_REGULAR) { /* a zero that means nothing */
+      w->run->special--;
+      return 0;
+    }
+  }
+  int over = w->point ? w->point(&point, w->user) : 0;
+  family_forget(f);
+  return over;
+}
+
+ric_status ric_family_follow(ric_family *f, double *z, double parameter, const double *tangent,
+                             int (*point)(const ric_family_point *point, void *user), void *user, ric_curve_run *run,
+                             ric_error *error) {
+  ric_error own;
+  follower w = {.f = f, .point = point, .user = user, .run = run, .error = error ? error : &own};
+  f->coincide = SIZE_MAX;
+  family_forget(f);
+  RIC_TRY(ric_curve_follow(f->curve, z, parameter, tangent, show, &w, run, w.error));
+  return w.status;
+}
+
+ric_status ric_family_switch(ric_family *f, const double *z, double parameter, const double *tangent, double *other,
+                             ric_error *error) {
+  family_forget(f);
+  return ric_curve_switch(f->curve, z, parameter, tangent, other, error);
+}
 
 /* Step of differences in a parameter, relative to 1 + its size. They only direct Newton's method and predictions: what
  * is found satisfies F, whose zeros know nothing of it. */
@@ -25,28 +124,6 @@ ric_family_options ric_family_options_default(void) {
       .curve = ric_curve_options_default(), .multipliers = true, .judge = ric_multiplier_options_default()};
   options.curve.newton_tol = 1e-12;
   return options;
-}
-
-void family_forget(ric_family *f) {
-  f->at[0] = f->at[1] = f->seen_at[0] = f->seen_at[1] = NAN;
-}
-
-/* --- parameters --------------------------------------------------------------------------------------------------- */
-
-ric_status family_set(ric_family *f, double first, double second, ric_error *error) {
-  const ric_family_problem *p = &f->problem;
-  if (f->at[0] == first && f->at[1] == second)
-    return RIC_OK;
-  f->at[0] = f->at[1] = NAN;
-  const double both[2] = {first, second};
-  f->given = p->set ? p->given : first;
-  if (p->set)
-    RIC_TRY(p->set(p->system, both, &f->given, p->user, error));
-  if (p->set && p->periods > 1 && !p->motion.energy_given)
-    f->given *= (double)p->periods;
-  f->at[0] = first;
-  f->at[1] = second;
-  return RIC_OK;
 }
 
 static ric_status residual_beside(ric_family *f, const double *at, size_t by, double shift, const double *z, double *F,
@@ -136,7 +213,7 @@ static ric_status copy_hits(ric_family *f, ric_error *error) {
   return RIC_OK;
 }
 
-static ric_status check(const ric_family_problem *p, const ric_family_options *o, ric_error *error) {
+static ric_status check_family(const ric_family_problem *p, const ric_family_options *o, ric_error *error) {
   size_t numbers = ric_system_coordinates(p->system) + ric_system_speeds(p->system);
   if (p->parameters < 1 || p->parameters > 2 || (p->parameters == 2 && !p->set))
     return ric_fail(error, RIC_EINVAL, "parameters = %zu, expected 1, or 2 with a function that sets them",
@@ -147,7 +224,7 @@ static ric_status check(const ric_family_problem *p, const ric_family_options *o
   return RIC_OK;
 }
 
-static ric_status allocate(ric_family *f, ric_error *error) {
+static ric_status allocate_family(ric_family *f, ric_error *error) {
   size_t n = f->unknowns;
   f->block = calloc(3 * n, sizeof *f->block);
   if (!f->block)
@@ -168,30 +245,10 @@ static ric_status build(ric_family *f, ric_error *error) {
   f->unknowns = ric_shooting_unknowns(f->shooting);
   f->impacts = m->start_count + m->half_count + m->count;
   f->tests = TEST_IMPACTS + f->impacts + (m->count > 0 ? f->shooting->arcs.arc_count : 0);
-  RIC_TRY(allocate(f, error));
+  RIC_TRY(allocate_family(f, error));
   const ric_curve_problem curve = {
       .unknowns = f->unknowns, .residual = residual, .tests = f->tests, .test = test, .user = f};
   return ric_curve_create(&curve, &f->options.curve, &f->curve, error);
-}
-
-ric_status ric_family_create(const ric_family_problem *problem, const ric_family_options *options, ric_family **family,
-                             ric_error *error) {
-  ric_family_options o = options ? *options : ric_family_options_default();
-  *family = NULL;
-  RIC_TRY(check(problem, &o, error));
-  ric_family *f = calloc(1, sizeof *f);
-  if (!f)
-    return ric_fail(error, RIC_ENOMEM, "no memory for a family");
-  f->problem = *problem;
-  f->options = o;
-  f->coincide = SIZE_MAX;
-  family_forget(f);
-  ric_status status = build(f, error);
-  if (status == RIC_OK)
-    *family = f;
-  else
-    ric_family_destroy(&f);
-  return status;
 }
 
 void ric_family_destroy(ric_family **family) {
@@ -206,6 +263,26 @@ void ric_family_destroy(ric_family **family) {
   free(f->block);
   free(f);
   *family = NULL;
+}
+
+ric_status ric_family_create(const ric_family_problem *problem, const ric_family_options *options, ric_family **family,
+                             ric_error *error) {
+  ric_family_options o = options ? *options : ric_family_options_default();
+  *family = NULL;
+  RIC_TRY(check_family(problem, &o, error));
+  ric_family *f = calloc(1, sizeof *f);
+  if (!f)
+    return ric_fail(error, RIC_ENOMEM, "no memory for a family");
+  f->problem = *problem;
+  f->options = o;
+  f->coincide = SIZE_MAX;
+  family_forget(f);
+  ric_status status = build(f, error);
+  if (status == RIC_OK)
+    *family = f;
+  else
+    ric_family_destroy(&f);
+  return status;
 }
 
 ric_shooting *ric_family_shooting(ric_family *family) {

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "family_parts.h"
+#include "family.h"
 
 /* Imaginary parts below it, relative to 1 + the modulus, are rounding: of eigenvalues that symmetry makes coincide. */
 static const double rounding = 1e-6;

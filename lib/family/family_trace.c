@@ -10,7 +10,7 @@
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_linalg.h>
 
-#include "family_parts.h"
+#include "family.h"
 
 /* Step of differences of psi, relative to 1 + the size of what moves. */
 static const double psi_step = 1e-5;
@@ -102,7 +102,8 @@ static ric_status residual(const double *u, double p, double *F, double *J, doub
 }
 
 /* The point of the curve at (z, first) and second, with its orbit. */
-static ric_status look(tracer *t, const double *u, double p, ric_family_curve_point *point, ric_error *error) {
+static ric_status evaluate_point(tracer *t, const double *u, double p, ric_family_curve_point *point,
+                                 ric_error *error) {
   ric_family *f = t->f;
   size_t n = f->unknowns;
   RIC_TRY(family_set(f, u[n], p, error));
@@ -117,7 +118,7 @@ static ric_status test(const double *u, double p, const double *t_u, double t_p,
   tracer *t = user;
   ric_family_curve_point point;
   (void)t_u, (void)t_p;
-  RIC_TRY(look(t, u, p, &point, error));
+  RIC_TRY(evaluate_point(t, u, p, &point, error));
   const ric_status status = t->tests.values(&point, values, t->tests.user, error);
   family_forget(t->f);
   return status;
@@ -128,7 +129,7 @@ static int show(const ric_curve_point *c, void *user) {
   ric_family_curve_point point;
   if (c->kind == RIC_CURVE_BRANCH_POINT)
     return 0;
-  t->status = look(t, c->u, c->p, &point, t->error);
+  t->status = evaluate_point(t, c->u, c->p, &point, t->error);
   if (t->status != RIC_OK)
     return 1;
   point.iterations = c->iterations;

@@ -1,12 +1,307 @@
-/* The flow of CVODES: for every system, on the state (q, u). */
+/* The flow of CVODES, for every system: its solver on the state (q, u), tangent vectors, and the flow. */
 #include <float.h>
 #include <math.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "cvodes_solver.h"
+#include <cvodes/cvodes.h>
+#include <nvector/nvector_serial.h>
+#include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
+
 #include "flow_method.h"
-#include "model/tangent.h"
+#include "model/system_model.h"
+#include "numeric/sundials_context.h"
+#include "ricochet/status.h"
+
+/* SUNDIALS CVODES behind a few calls: the one place that knows its interface.
+ *
+ * Adams' formulas of orders 1 to 12 with variable steps; the implicit equations by fixed-point iteration. The local
+ * error of a step, in root mean square over the numbers of a state, is kept below `tolerance` times the size of the
+ * state, itself in root mean square. Functions return NULL or what went wrong as a static text. */
+
+enum { CVODES_ORDER = 12 };
+
+/** Tangent vectors in CVODES' forward sensitivity analysis (staggered, under the error control of the state). */
+typedef struct cvodes_tangents {
+  size_t columns;   /* there is room for, and CVODES knows of; 0: none */
+  bool carried;     /* they take part */
+  N_Vector *vector; /* [columns] */
+  SUNNonlinearSolver iteration;
+  double *absolute;     /* [columns] tolerances */
+  double **d, **d_rate; /* [columns] the numbers of vectors, for the callback */
+} cvodes_tangents;
+
+typedef struct cvodes_solver {
+  SUNContext context;
+  void *memory;
+  SUNNonlinearSolver iteration;
+  N_Vector y, row;
+  size_t size;
+  double
+      origin; /* of the time that CVODES sees: that of the last restart, so that early steps are not lost in rounding */
+  double begin, end; /* of the last step, from the origin */
+  double tolerance;
+  /** Rates of the state [size]. */
+  const char *(*rate)(void *user, double t, const double *y, double *y_rate);
+  /** Rates of the tangent vectors d [columns][size] at a state. */
+  const char *(*tangent_rate)(void *user, double t, const double *y, double *const *d, double *const *d_rate);
+  void *user;
+  cvodes_tangents tangents;
+  const char *trouble; /* of the last call of `rate` that failed, and when */
+  double trouble_time;
+} cvodes_solver;
+
+/* States below it count as of this size: a state passes through zero, and rests there, without steps that shrink. */
+static const double least_size = 1e-3;
+
+/* States beyond it blow up: their squares soon leave the range of numbers. */
+static const double greatest_size = 1e100;
+
+/* Steps grow as soon as they may grow by it; CVODES would wait for 1.5, and needs half as many evaluations again. */
+static const double least_growth = 1.05;
+
+static int silence(void *memory) {
+#if SUNDIALS_VERSION_MAJOR >= 7
+  (void)memory;
+  return 0;
+#else
+  return CVodeSetErrHandlerFn(memory, sundials_say_nothing, NULL);
+#endif
+}
+
+static double root_mean_square(const double *y, size_t size) {
+  double most = 0, sum = 0;
+  for (size_t i = 0; i < size; i++)
+    most = fmax(most, fabs(y[i]));
+  if (!(most > 0 && most < INFINITY))
+    return most;
+  for (size_t i = 0; i < size; i++)
+    sum += (y[i] / most) * (y[i] / most);
+  return most * sqrt(sum / (double)size);
+}
+
+static int rate_of_state(double t, N_Vector y, N_Vector y_rate, void *user) {
+  cvodes_solver *s = user;
+  if (s->trouble) /* whatever CVODES tries after a failure */
+    return -1;
+  const char *trouble = s->rate(s->user, s->origin + t, N_VGetArrayPointer(y), N_VGetArrayPointer(y_rate));
+  if (!trouble)
+    return 0;
+  s->trouble = trouble;
+  s->trouble_time = s->origin + t;
+  return -1; /* a smaller step would not help */
+}
+
+static int weights(N_Vector y, N_Vector weight, void *user) {
+  const cvodes_solver *s = user;
+  N_VConst(1 / (s->tolerance * fmax(root_mean_square(N_VGetArrayPointer(y), s->size), least_size)), weight);
+  return 0;
+}
+
+/** The state [size]; written before a restart, read after a step. */
+static double *cvodes_solver_state(const cvodes_solver *s) {
+  return N_VGetArrayPointer(s->y);
+}
+
+static int set_up_steps(cvodes_solver *s, double longest_step) {
+  N_VConst(0, s->y);
+  int failed = silence(s->memory) || CVodeInit(s->memory, rate_of_state, 0, s->y);
+  failed = failed || CVodeWFtolerances(s->memory, weights) || CVodeSetUserData(s->memory, s);
+  failed = failed || CVodeSetMaxHnilWarns(s->memory, -1) || CVodeSetEtaFixedStepBounds(s->memory, 0, least_growth);
+  if (!failed && longest_step < INFINITY)
+    failed = CVodeSetMaxStep(s->memory, longest_step);
+  if (failed)
+    return failed;
+  s->iteration = SUNNonlinSol_FixedPoint(s->y, 0, s->context);
+  return !s->iteration || CVodeSetNonlinearSolver(s->memory, s->iteration);
+}
+
+static void cvodes_tangents_clear(cvodes_solver *s) {
+  cvodes_tangents *d = &s->tangents;
+  if (d->columns > 0)
+    CVodeSensFree(s->memory);
+  if (d->iteration)
+    SUNNonlinSolFree(d->iteration);
+  if (d->vector)
+    N_VDestroyVectorArray(d->vector, (int)d->columns);
+  free(d->absolute);
+  free(d->d);
+  *d = (cvodes_tangents){0};
+}
+
+static void cvodes_solver_clear(cvodes_solver *s) {
+  cvodes_tangents_clear(s);
+  if (s->memory)
+    CVodeFree(&s->memory);
+  if (s->iteration)
+    SUNNonlinSolFree(s->iteration);
+  if (s->row)
+    N_VDestroy(s->row);
+  if (s->y)
+    N_VDestroy(s->y);
+  if (s->context)
+    SUNContext_Free(&s->context);
+  s->iteration = NULL;
+  s->y = s->row = NULL;
+}
+
+static ric_status cvodes_solver_init(cvodes_solver *s, double longest_step, ric_error *error) {
+  if (sundials_context_create(&s->context) == 0) {
+    s->y = N_VNew_Serial((sunindextype)s->size, s->context);
+    s->row = N_VNewEmpty_Serial((sunindextype)s->size, s->context);
+    s->memory = CVodeCreate(CV_ADAMS, s->context);
+    if (s->y && s->row && s->memory && set_up_steps(s, longest_step) == 0)
+      return RIC_OK;
+  }
+  cvodes_solver_clear(s);
+  return ric_fail(error, RIC_ENOMEM, "no memory for CVODES with %zu numbers", s->size);
+}
+
+/** Tells CVODES of the tangent vectors, after a restart. */
+static const char *cvodes_tangents_restart(cvodes_solver *s) {
+  cvodes_tangents *d = &s->tangents;
+  for (size_t k = 0; k < d->columns; k++)
+    d->absolute[k] = s->tolerance * fmax(N_VMaxNorm(d->vector[k]), 1e-290);
+  int failed = CVodeSensReInit(s->memory, CV_STAGGERED, d->vector);
+  failed = failed || CVodeSensSStolerances(s->memory, s->tolerance, d->absolute);
+  return failed ? "CVODES refuses to start with tangent vectors" : NULL;
+}
+
+/** Forgets the history. */
+static const char *cvodes_solver_restart(cvodes_solver *s, double t) {
+  s->origin = t;
+  if (CVodeReInit(s->memory, 0, s->y))
+    return "CVODES refuses to start";
+  return s->tangents.carried ? cvodes_tangents_restart(s) : NULL;
+}
+
+static const char *text_of(int code) {
+  switch (code) {
+  case CV_ERR_FAILURE:
+  case CV_CONV_FAILURE:
+    return "steps shrink to nothing: the motion blows up, or its forces jump";
+  case CV_TOO_MUCH_ACC:
+    return "the tolerance is beyond the precision of numbers";
+  default:
+    return "CVODES gave up";
+  }
+}
+
+/** One step towards `stop`, and not beyond. @param t  set to the time after it; `stop` itself when it was reached */
+static const char *cvodes_solver_step(cvodes_solver *s, double stop, double *t) {
+  double end;
+  s->trouble = NULL;
+  CVodeGetCurrentTime(s->memory, &s->begin);
+  s->trouble_time = s->origin + s->begin;
+  int code = CVodeSetStopTime(s->memory, stop - s->origin);
+  if (code == CV_SUCCESS)
+    code = CVode(s->memory, stop - s->origin, s->y, &end, CV_ONE_STEP);
+  if (code < 0 || s->trouble) /* CVODES may get past a failure with a shorter step; a callback that fails is the end */
+    return s->trouble ? s->trouble : text_of(code);
+  if (end == s->begin)
+    return "steps shrink to nothing: the motion blows up, or its forces jump";
+  if (!(root_mean_square(cvodes_solver_state(s), s->size) < greatest_size))
+    return "the motion blows up";
+  s->end = end;
+  *t = code == CV_TSTOP_RETURN ? stop : s->origin + end;
+  return NULL;
+}
+
+/** Length of the last step and of the next one that is planned, the larger of the two, >= 0. */
+static double cvodes_solver_span(const cvodes_solver *s) {
+  double last = 0, next = 0;
+  CVodeGetLastStep(s->memory, &last);
+  CVodeGetCurrentStep(s->memory, &next);
+  return fmax(fabs(last), fabs(next));
+}
+
+/** The state on the last step as a polynomial in [0, 1], coef [CVODES_ORDER + 1][size]; its degree, -1 when there is
+ *  none. */
+static int cvodes_solver_polynomial(cvodes_solver *s, double *coef) {
+  int degree = 0;
+  if (CVodeGetLastOrder(s->memory, &degree))
+    return -1;
+  double scale = 1, length = s->end - s->begin; /* scale: length^k / k! */
+  for (int k = 0; k <= degree; k++) {
+    N_VSetArrayPointer(coef + (size_t)k * s->size, s->row);
+    if (CVodeGetDky(s->memory, s->begin, k, s->row))
+      return -1;
+    N_VScale(scale, s->row, s->row);
+    scale *= length / (k + 1);
+  }
+  return degree;
+}
+
+/* Tangent vectors by the forward sensitivity analysis of CVODES. */
+
+/** Tangent vector [size]; written before a restart, read after cvodes_tangents_at. */
+static double *cvodes_solver_tangent(const cvodes_solver *s, size_t column) {
+  return N_VGetArrayPointer(s->tangents.vector[column]);
+}
+
+static int rates(int count, sunrealtype t, N_Vector y, N_Vector y_rate, N_Vector *d, N_Vector *d_rate, void *user,
+                 N_Vector work, N_Vector more_work) {
+  cvodes_solver *s = user;
+  (void)y_rate, (void)work, (void)more_work;
+  if (s->trouble)
+    return -1;
+  for (int k = 0; k < count; k++) {
+    s->tangents.d[k] = N_VGetArrayPointer(d[k]);
+    s->tangents.d_rate[k] = N_VGetArrayPointer(d_rate[k]);
+  }
+  s->trouble = s->tangent_rate(s->user, s->origin + t, N_VGetArrayPointer(y), s->tangents.d, s->tangents.d_rate);
+  s->trouble_time = s->origin + t;
+  return s->trouble ? -1 : 0;
+}
+
+static ric_status allocate_sensitivities(cvodes_solver *s, size_t columns, ric_error *error) {
+  cvodes_tangents *d = &s->tangents;
+  d->vector = columns < 1u << 20 ? N_VCloneVectorArray((int)columns, s->y) : NULL;
+  d->absolute = malloc(columns * sizeof *d->absolute);
+  d->d = malloc(2 * columns * sizeof *d->d);
+  d->d_rate = d->d + columns;
+  d->columns = d->vector ? columns : 0;
+  if (d->vector && d->absolute && d->d)
+    return RIC_OK;
+  cvodes_tangents_clear(s);
+  return ric_fail(error, RIC_ENOMEM, "no memory for CVODES with %zu tangent vectors", columns);
+}
+
+static int set_up_sensitivities(cvodes_solver *s) {
+  cvodes_tangents *d = &s->tangents;
+  for (size_t k = 0; k < d->columns; k++)
+    N_VConst(0, d->vector[k]);
+  if (CVodeSensInit(s->memory, (int)d->columns, CV_STAGGERED, rates, d->vector) ||
+      CVodeSetSensErrCon(s->memory, SUNTRUE))
+    return -1;
+  d->iteration = SUNNonlinSol_FixedPointSens((int)d->columns, s->y, 0, s->context);
+  return d->iteration ? CVodeSetNonlinearSolverSensStg(s->memory, d->iteration) : -1;
+}
+
+/** Makes room for tangent vectors; 0: none any more, whose room stays for as many again. A restart must follow. */
+static ric_status cvodes_solver_carry(cvodes_solver *s, size_t columns, ric_error *error) {
+  s->tangents.carried = columns > 0;
+  if (columns == 0 && s->tangents.columns > 0)
+    CVodeSensToggleOff(s->memory); /* the next restart with them turns them on */
+  if (columns == 0 || columns == s->tangents.columns)
+    return RIC_OK;
+  cvodes_tangents_clear(s);
+  RIC_TRY(allocate_sensitivities(s, columns, error));
+  s->tangents.carried = true;
+  if (set_up_sensitivities(s) == 0)
+    return RIC_OK;
+  cvodes_tangents_clear(s);
+  return ric_fail(error, RIC_ENOMEM, "no memory for CVODES with %zu tangent vectors", columns);
+}
+
+/** Sets the tangent vectors to those at a position of the last step, 0 <= x <= 1. */
+static const char *cvodes_tangents_at(cvodes_solver *s, double x) {
+  double t = x == 1 ? s->end : s->begin + x * (s->end - s->begin);
+  return CVodeGetSensDky(s->memory, t, 0, s->tangents.vector) ? "CVODES gives no tangent vectors for its step" : NULL;
+}
+
+/* The flow of CVODES: for every system, on the state (q, u). */
 
 typedef struct cvodes_flow {
   ric_flow base;
@@ -213,8 +508,8 @@ static const flow_method method = {.start = start,
                                    .transport = transport,
                                    .destroy = destroy};
 
-static ric_status allocate(cvodes_flow *f, const ric_system *system, const ric_flow_options *options,
-                           ric_error *error) {
+static ric_status allocate_flow(cvodes_flow *f, const ric_system *system, const ric_flow_options *options,
+                                ric_error *error) {
   size_t n = system->coordinates, m = system->speeds;
   RIC_TRY(flow_init(&f->base, &method, system, options, error));
   f->solver = (cvodes_solver){
@@ -232,7 +527,7 @@ ric_status cvodes_flow_create(const ric_system *system, const ric_flow_options *
   cvodes_flow *f = calloc(1, sizeof *f);
   if (!f)
     return ric_fail(error, RIC_ENOMEM, "no memory for a flow");
-  ric_status status = allocate(f, system, options, error);
+  ric_status status = allocate_flow(f, system, options, error);
   if (status == RIC_OK)
     *flow = &f->base;
   else

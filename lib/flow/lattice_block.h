@@ -1,4 +1,15 @@
-/* The Taylor recurrence on a block of columns: internal to the flow.
+/* The Taylor recurrence of a piece of a lattice: for loops over columns, and for a few particles. Internal to the
+ * library. */
+#ifndef RICOCHET_LATTICE_BLOCK_H
+#define RICOCHET_LATTICE_BLOCK_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "hertz_series.h"
+#include "numeric/vectorised.h"
+
+/* The Taylor recurrence on a block of columns.
  *
  * With x = (t - start) / h the motion of a particle is sum_j c_j x^j, and
  *
@@ -10,13 +21,6 @@
  *
  * A block knows nothing of lattices: its columns carry rows of constants. Columns of zeros are walls, an inverse mass
  * of zero holds a column where it is. */
-#ifndef RICOCHET_LATTICE_BLOCK_H
-#define RICOCHET_LATTICE_BLOCK_H
-
-#include <stdbool.h>
-#include <stddef.h>
-
-#include "hertz_series.h"
 
 /** Constants of a column. Link constants belong to the link on its left. */
 typedef enum block_row {
@@ -38,10 +42,6 @@ typedef enum block_row {
 
 /** What a block has beyond linear springs. */
 enum { BLOCK_DAMPED = 1, BLOCK_LINK_DAMPED = 2, BLOCK_SITE_NONLINEAR = 4, BLOCK_LINK_NONLINEAR = 8, BLOCK_FORCED = 16 };
-
-/** Below this divisor a rounded reciprocal would change the size of a mode by the same 1e-17 at every step, which adds
- *  up; rounding of a quotient depends on the motion and does not. Later coefficients are too small to matter. */
-enum { LAST_DIVIDED = 56 };
 
 /** A pressed Hertz contact of a column. */
 typedef struct block_press {
@@ -86,11 +86,68 @@ static inline void lattice_block_close_ring(lattice_block *block, int level) {
   }
 }
 
-/** Adds the j-th coefficient of the pressed contacts' forces to c_{j+2}, in a step of length h. */
-void lattice_block_press(lattice_block *block, int j, double h);
-
 /** Fills c_2 ... c_order from c_0 and c_1 (velocity times h); ghosts and the starts of the presses are given.
  *  @param cosine, sine  [order + 1] series of the forcing's cosine and sine */
 void lattice_block_raise(lattice_block *block, double h, const double *cosine, const double *sine);
+
+/* The Taylor recurrence of a few particles.
+ *
+ * Where a block is the whole of a lattice of up to FEW particles there is nothing to gain from loops over columns
+ * (lattice_block.h). Here the system is a dense one, and its nonlinear springs, which take nearly all of the time, are
+ * lanes side by side; linear ones take none. With the extension x_s of spring s,
+ *
+ *   c'' = A c + B c' + forcing - sum_s P_s (a_s x_s^2 + b_s x_s^3),
+ *
+ * level j + 2 follows from the levels up to j, and without dampers level j + 3 from those up to j + 1: two levels are
+ * made at a time, so that the sums of one hide how long those of the other take. Without nonlinear springs what takes
+ * time is that a level waits for the one before: all that does not depend on it is done beside, and what follows from
+ * the length of the step alone once for all steps of that length. */
+
+enum {
+  FEW = 8,
+  FEW_LEVELS = 32, /* an even number */
+  FEW_GROUPS = (2 * FEW + 1 + RIC_LANES - 1) / RIC_LANES,
+  FEW_VECTORS = FEW / RIC_LANES
+};
+
+/** Springs side by side. */
+typedef struct few_springs {
+  size_t count;
+  ric_lanes quadratic, cubic;
+  ric_lanes stretch[FEW];                 /* extension by each coordinate: 0, 1 or -1 */
+  ric_lanes pull[RIC_LANES][FEW_VECTORS]; /* accelerations by a unit of each force */
+  ric_lanes x[FEW_LEVELS], square[FEW_LEVELS];
+} few_springs;
+
+/** Column by column: what all particles feel of one. */
+typedef ric_lanes few_matrix[FEW][FEW_VECTORS];
+
+/** What makes level j + 2 of linear particles in a step of length h, (j + 1) (j + 2) beside: h^2 times accelerations by
+ *  level j, and h (j + 1) times those by level j + 1. Where a reciprocal may be rounded (lattice_block.h), the divisor
+ * is in them, and 1 beside. */
+typedef struct few_scales {
+  double h;
+  double low[FEW_LEVELS], high[FEW_LEVELS], divisor[FEW_LEVELS];
+} few_scales;
+
+typedef struct lattice_few {
+  size_t groups;
+  few_matrix stiffness, damping; /* accelerations by each coordinate, by each speed */
+  few_scales scales;
+  few_springs group[FEW_GROUPS];
+} lattice_few;
+
+/** Whether blocks of that many particles, with these terms, are for lattice_few when they are a whole lattice: all of
+ * up to FEW but for linear ones too large for a dense matrix to be worth it. */
+bool lattice_few_takes(size_t count, unsigned terms);
+
+/** Columns that levels of such a block have at least: ghosts, and particles that are not there. */
+size_t lattice_few_columns(size_t count);
+
+/** Takes over the rows of the block. */
+void lattice_few_load(lattice_few *few, const lattice_block *block);
+
+/** lattice_block_raise for such a block. */
+void lattice_few_raise(lattice_few *few, lattice_block *block, double h, const double *cosine, const double *sine);
 
 #endif

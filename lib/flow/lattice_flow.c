@@ -1,12 +1,164 @@
-/* The Taylor flow of lattices: its life, its pieces and its states. */
+/* The Taylor flow of lattices: its life, its pieces and states, and the contacts that act in a step. */
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
+#include <string.h>
 
-#include "lattice_flow_parts.h"
 #include "hertz_series.h"
-#include "model/lattice_force.h"
+#include "lattice_series.h"
+#include "lattice_variation.h"
 #include "model/lattice_system.h"
+#include "taylor_step.h"
+
+/* The Taylor flow of a lattice, for the files that share it. */
+
+typedef struct lattice_flow {
+  ric_flow base;
+  taylor_stepper stepper;
+  const ric_lattice *lattice;   /* the system's */
+  lattice_series *series;       /* of the piece that was asked for last */
+  lattice_series *aside;        /* of the neighbourhood of one particle; NULL with one piece */
+  size_t block;                 /* particles of a piece, the last may have fewer */
+  size_t made;                  /* piece that `series` holds, SIZE_MAX: none */
+  size_t ended;                 /* the first pieces have their state at the end of the step in q_next, u_next */
+  double *q_next, *u_next;      /* [n] */
+  lattice_variation *variation; /* NULL until tangent vectors are carried */
+
+  /* Contacts, each list in order of coordinates. */
+  size_t *held;           /* [held_count], of at most [obstacles] */
+  lattice_press *pressed; /* [pressed_count], of at most [compliant obstacles] */
+  lattice_press *acting;  /* [acting_count] those of `pressed` whose force has a series at the start of this step */
+  size_t held_count, pressed_count, acting_count;
+  bool contacts_changed; /* since `series` was told */
+  bool aside_stale;
+} lattice_flow;
+
+/* Contacts of the Taylor flow of a lattice: which act in a step, and the force of those that hold. */
+
+static bool put_held(lattice_flow *f, size_t coordinate) {
+  size_t at = f->held_count;
+  if (at > 0 && f->held[at - 1] == coordinate)
+    return false;
+  bool changed = f->held[at] != coordinate;
+  f->held[f->held_count++] = coordinate;
+  return changed;
+}
+
+static bool same_press(const lattice_press *a, const lattice_press *b) {
+  return a->coordinate == b->coordinate && a->side == b->side && a->position == b->position &&
+         a->stiffness == b->stiffness;
+}
+
+static bool put_pressed(lattice_flow *f, const ric_obstacle *o) {
+  lattice_press press = {o->coordinate, o->side, o->position, o->stiffness}, *p = &f->pressed[f->pressed_count++];
+  bool changed = !same_press(p, &press);
+  *p = press;
+  return changed;
+}
+
+/** Collects held and pressed contacts from the states of the flow's contacts. */
+static void lattice_flow_list_contacts(lattice_flow *f) {
+  const ric_system *s = f->base.system;
+  size_t held_before = f->held_count, pressed_before = f->pressed_count;
+  bool held_changed = false, pressed_changed = false;
+  f->held_count = f->pressed_count = 0;
+  for (size_t k = 0; k < s->obstacle_count; k++) {
+    size_t j = s->by_coordinate[k];
+    if (f->base.contact[j] == CONTACT_HELD)
+      held_changed |= put_held(f, s->obstacles[j].coordinate);
+    else if (f->base.contact[j] == CONTACT_PRESSED)
+      pressed_changed |= put_pressed(f, &s->obstacles[j]);
+  }
+  held_changed |= f->held_count != held_before;
+  pressed_changed |= f->pressed_count != pressed_before;
+  f->contacts_changed |= held_changed || pressed_changed;
+  if (pressed_changed) /* steps near the branch points of Hertz's law say nothing about those elsewhere */
+    f->stepper.trial = taylor_stepper_natural(&f->stepper);
+}
+
+static bool acts(const lattice_flow *f, const lattice_press *p, int direction, double *limit) {
+  double mass = ric_lattice_mass(f->lattice, p->coordinate), t = f->base.time;
+  double force = lattice_force(f->lattice, p->coordinate, t, f->base.q, f->base.u);
+  hertz_contact c = {.penetration = p->side * (p->position - f->base.q[p->coordinate]),
+                     .rate = -p->side * direction * f->base.u[p->coordinate],
+                     .bend = fabs(force) / mass,
+                     .strength = p->stiffness / mass};
+  return hertz_acts(&c, f->base.options.tolerance, taylor_stepper_natural(&f->stepper), taylor_step_least(t), limit);
+}
+
+/** Sorts out which pressed contacts act. Those that have only just closed, or are about to open, have no series; their
+ *  force is negligible on a short step and left out.
+ *  @param direction  +1 or -1, the sense of time
+ *  @param limit  set to the longest step with that force left out, INFINITY when all act */
+static ric_status lattice_flow_take_contacts(lattice_flow *f, int direction, double *limit, ric_error *error) {
+  size_t before = f->acting_count, count = 0;
+  bool changed = f->contacts_changed;
+  *limit = INFINITY;
+  for (size_t k = 0; k < f->pressed_count; k++)
+    if (acts(f, &f->pressed[k], direction, limit)) {
+      changed |= count >= before || !same_press(&f->acting[count], &f->pressed[k]);
+      f->acting[count++] = f->pressed[k];
+    }
+  f->acting_count = count;
+  if (!changed && count == before)
+    return RIC_OK;
+  lattice_contacts contacts = {f->held, f->held_count, f->acting, count};
+  f->contacts_changed = f->aside_stale = true;
+  RIC_TRY(lattice_series_begin(f->series, f->lattice, &contacts, error));
+  f->contacts_changed = false;
+  return RIC_OK;
+}
+
+/** Whether a pressed contact takes part in this step. */
+static bool lattice_flow_acts(const lattice_flow *f, const lattice_press *p) {
+  for (size_t k = 0; k < f->acting_count; k++)
+    if (same_press(&f->acting[k], p))
+      return true;
+  return false;
+}
+
+/* Force of Hertz contacts on a coordinate that stays where it is. */
+static double constant_push(const lattice_flow *f, size_t coordinate) {
+  double force = 0;
+  for (size_t k = 0; k < f->pressed_count; k++) {
+    const lattice_press *p = &f->pressed[k];
+    if (p->coordinate == coordinate)
+      force += p->side * hertz_force(p->stiffness, p->side * (f->base.q[coordinate] - p->position));
+  }
+  return force;
+}
+
+/* A segment of a particle and its neighbours, beside the pieces. */
+static bool make_aside(lattice_flow *f, size_t particle) {
+  size_t n = f->lattice->particles;
+  bool ring = f->lattice->ends == RIC_ENDS_PERIODIC;
+  size_t first = particle > 0 ? particle - 1 : ring ? n - 1 : 0;
+  size_t count = ring || (particle > 0 && particle + 1 < n) ? 3 : 2;
+  if (f->aside_stale) {
+    lattice_contacts contacts = {f->held, f->held_count, f->acting, f->acting_count};
+    if (lattice_series_begin(f->aside, f->lattice, &contacts, NULL) != RIC_OK)
+      return false;
+    f->aside_stale = false;
+  }
+  lattice_series_segment(f->aside, f->base.q, f->base.u, f->base.time, f->base.length, first, count);
+  return true;
+}
+
+static int lattice_flow_reaction(ric_flow *flow, size_t obstacle, double *c) {
+  lattice_flow *f = (lattice_flow *)(void *)flow;
+  const ric_obstacle *o = &flow->system->obstacles[obstacle];
+  if (flow->pieces == 1)
+    flow->method->piece(flow, 0);
+  else if (!make_aside(f, o->coordinate))
+    return -1;
+  int degree = lattice_series_force(flow->pieces == 1 ? f->series : f->aside, o->coordinate, c);
+  c[0] += constant_push(f, o->coordinate);
+  for (int j = 0; j <= RIC_POLY_DEGREE; j++)
+    c[j] *= -o->side;
+  return degree;
+}
+
+/* The Taylor flow of lattices: its life, its pieces and its states. */
 
 static lattice_flow *self(ric_flow *flow) {
   return (lattice_flow *)(void *)flow;
@@ -169,7 +321,7 @@ static ric_status fit_series(lattice_flow *f, ric_error *error) {
   return beside ? fit(f, 3, &f->aside, error) : RIC_OK;
 }
 
-static ric_status allocate(lattice_flow *f, ric_error *error) {
+static ric_status allocate_lattice(lattice_flow *f, ric_error *error) {
   size_t n = f->base.system->coordinates, obstacles = f->base.system->obstacle_count;
   size_t compliant = system_compliant_obstacles(f->base.system);
   f->q_next = malloc(n * sizeof *f->q_next);
@@ -254,7 +406,7 @@ ric_status lattice_flow_create(const ric_system *system, const ric_flow_options 
   f->made = SIZE_MAX;
   f->contacts_changed = f->aside_stale = true;
   plan(f);
-  status = allocate(f, error);
+  status = allocate_lattice(f, error);
   if (status != RIC_OK)
     destroy(&f->base);
   else

@@ -1,10 +1,245 @@
+/* The Taylor series of a lattice over a step, block by block. */
 #include "lattice_series.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "lattice_series_parts.h"
+/** Columns of a block that are particles following each other. */
+typedef struct series_run {
+  size_t column, particle, count;
+} series_run;
+
+/* Constants of the columns of a block, from the lattice and its contacts. */
+
+/* Everything about one particle. */
+typedef struct site {
+  double inverse_mass, cosine, sine;
+  ric_spring own, left, right;
+} site;
+
+static site site_of(const ric_lattice *lattice, size_t particle) {
+  return (site){.inverse_mass = 1 / ric_lattice_mass(lattice, particle),
+                .own = ric_lattice_on_site(lattice, particle),
+                .left = ric_lattice_link(lattice, particle),
+                .right = ric_lattice_link(lattice, particle + 1),
+                .cosine = lattice->force_cos ? lattice->force_cos[particle] : 0,
+                .sine = lattice->force_sin ? lattice->force_sin[particle] : 0};
+}
+
+static void set(const lattice_block *b, block_row row, size_t column, double value) {
+  if (b->row[row])
+    b->row[row][column] = value;
+}
+
+static void set_column(lattice_block *b, size_t i, const site *s) {
+  double w = s->inverse_mass;
+  set(b, ROW_INVERSE_MASS, i, w);
+  set(b, ROW_OWN, i, -(s->own.linear + s->left.linear + s->right.linear) * w);
+  set(b, ROW_LEFT, i, s->left.linear * w);
+  set(b, ROW_RIGHT, i, s->right.linear * w);
+  if (b->terms == 0)
+    return;
+  set(b, ROW_DAMP_OWN, i, -(s->own.damping + s->left.damping + s->right.damping) * w);
+  set(b, ROW_DAMP_LEFT, i, s->left.damping * w);
+  set(b, ROW_DAMP_RIGHT, i, s->right.damping * w);
+  set(b, ROW_SITE_SQUARE, i, s->own.quadratic * w);
+  set(b, ROW_SITE_CUBE, i, s->own.cubic * w);
+  set(b, ROW_COS, i, s->cosine * w);
+  set(b, ROW_SIN, i, s->sine * w);
+}
+
+static void set_link(lattice_block *b, size_t column, const ric_spring *link) {
+  set(b, ROW_LINK_SQUARE, column, link->quadratic);
+  set(b, ROW_LINK_CUBE, column, link->cubic);
+}
+
+static bool same_everywhere(const ric_lattice *l) {
+  return !l->masses && !l->on_sites && !l->links && !l->force_cos && !l->force_sin;
+}
+
+/* Repeats the constants of the column `from` up to the column `to`. */
+static void repeat(lattice_block *b, size_t from, size_t to) {
+  for (int row = 0; row < BLOCK_ROWS; row++)
+    for (size_t i = from + 1; b->row[row] && i < to; i++)
+      b->row[row][i] = b->row[row][from];
+}
+
+static void load_particle(lattice_series *s, const series_run *run, size_t i) {
+  site here = site_of(s->lattice, run->particle + i);
+  set_column(&s->block, run->column + i, &here);
+  set_link(&s->block, run->column + i, &here.left);
+  set_link(&s->block, run->column + i + 1, &here.right); /* the next column may be a wall */
+}
+
+static void load_run(lattice_series *s, const series_run *run) {
+  size_t to_last = s->lattice->particles - 1 - run->particle;
+  size_t inner = run->particle == 0 ? 1 : 0, inner_end = to_last < run->count ? to_last : run->count;
+  if (!same_everywhere(s->lattice) || inner >= inner_end)
+    inner = inner_end = run->count;
+  for (size_t i = 0; i < inner; i++)
+    load_particle(s, run, i);
+  if (inner < inner_end) {
+    load_particle(s, run, inner);
+    repeat(&s->block, run->column + inner, run->column + inner_end);
+    set_link(&s->block, run->column + inner_end, &s->lattice->link);
+  }
+  for (size_t i = inner_end; i < run->count; i++)
+    load_particle(s, run, i);
+}
+
+/* First of the sorted contacts at or behind a particle. */
+static size_t first_held(const lattice_contacts *c, size_t particle) {
+  size_t low = 0, high = c->held_count;
+  while (low < high) {
+    size_t middle = low + (high - low) / 2;
+    if (c->held[middle] < particle)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  return low;
+}
+
+static size_t first_pressed(const lattice_contacts *c, size_t particle) {
+  size_t low = 0, high = c->pressed_count;
+  while (low < high) {
+    size_t middle = low + (high - low) / 2;
+    if (c->pressed[middle].coordinate < particle)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  return low;
+}
+
+/* A held particle is one of infinite mass; its links still pull at its neighbours. */
+static void hold(lattice_series *s, size_t column) {
+  static const block_row rows[] = {ROW_OWN,       ROW_LEFT,       ROW_RIGHT,       ROW_DAMP_OWN,
+                                   ROW_DAMP_LEFT, ROW_DAMP_RIGHT, ROW_SITE_SQUARE, ROW_SITE_CUBE,
+                                   ROW_COS,       ROW_SIN,        ROW_INVERSE_MASS};
+  for (size_t r = 0; r < sizeof rows / sizeof *rows; r++)
+    set(&s->block, rows[r], column, 0);
+  s->held_column[s->held_count++] = column;
+}
+
+static void load_contacts(lattice_series *s, const series_run *run) {
+  const lattice_contacts *c = &s->contacts;
+  lattice_block *b = &s->block;
+  size_t end = run->particle + run->count, shift = run->column - run->particle; /* may wrap; so does the sum */
+  for (size_t k = first_held(c, run->particle); k < c->held_count && c->held[k] < end; k++)
+    hold(s, c->held[k] + shift);
+  for (size_t k = first_pressed(c, run->particle); k < c->pressed_count && c->pressed[k].coordinate < end; k++) {
+    const lattice_press *p = &c->pressed[k];
+    size_t column = p->coordinate + shift;
+    block_press *press = &b->presses.press[b->presses.count++];
+    press->column = column;
+    press->side = p->side;
+    press->position = p->position;
+    press->strength = p->side * p->stiffness * b->row[ROW_INVERSE_MASS][column];
+  }
+}
+
+/** Next run of columns, from left to right; starts with a run of zeros, returns false behind the last. */
+static bool series_next_run(const lattice_series *s, series_run *run) {
+  const lattice_block *b = &s->block;
+  if (b->whole) { /* one run between two ghosts */
+    bool first = run->count == 0;
+    *run = (series_run){.column = 1, .count = b->count};
+    return first;
+  }
+  size_t n = s->lattice->particles, width = b->count + 2 * b->ghosts;
+  ptrdiff_t begin = (ptrdiff_t)s->segment.first - (ptrdiff_t)b->ghosts, whole = (ptrdiff_t)n;
+  size_t column = run->column + run->count; /* behind the last run */
+  if (column == 0 && begin < 0 && !s->ring)
+    column = (size_t)-begin;
+  ptrdiff_t particle = begin + (ptrdiff_t)column;
+  if (column >= width || (particle >= whole && !s->ring))
+    return false;
+  size_t wrapped = (size_t)((particle % whole + whole) % whole);
+  size_t rest = n - wrapped, left = width - column;
+  *run = (series_run){.column = column, .particle = wrapped, .count = rest < left ? rest : left};
+  return true;
+}
+
+/** Loads the constants of the block's columns, and its contacts. */
+static void series_load_rows(lattice_series *s) {
+  lattice_block *b = &s->block;
+  size_t width = b->count + 2 * b->ghosts;
+  for (int row = 0; row < BLOCK_ROWS; row++)
+    if (b->row[row])
+      memset(b->row[row], 0, width * sizeof *b->row[row]);
+  if (b->whole) /* ghosts of walls and of rings start as zeros */
+    for (int j = 0; j <= b->order; j++)
+      b->c[(size_t)j * b->stride] = b->c[(size_t)j * b->stride + b->count + 1] = 0;
+  b->presses.count = s->held_count = 0;
+  for (series_run run = {0}; series_next_run(s, &run);)
+    load_run(s, &run);
+  for (series_run run = {0}; series_next_run(s, &run);)
+    load_contacts(s, &run);
+  if (s->few)
+    lattice_few_load(s->few, b);
+}
+
+/* What is read off a series: how it falls off, and the force on one of its particles. */
+
+taylor_decay lattice_series_decay(const lattice_series *s) {
+  const lattice_block *b = &s->block;
+  taylor_decay d = taylor_decay_of(s->segment.coef, b->stride, b->count, b->order);
+  for (size_t k = 0; k < b->presses.count; k++) {
+    const block_press *p = &b->presses.press[k];
+    if (p->column >= b->ghosts && p->column - b->ghosts < b->count) /* others are their own piece's */
+      d.nearest_zero = fmin(d.nearest_zero, hertz_series_nearest_zero(&p->series));
+  }
+  return d;
+}
+
+/* Subtracts factor times the force series of a spring with the extension x; all series have degree RIC_POLY_DEGREE. */
+static void subtract_spring(const ric_spring *s, const double *x, double length, double factor, double *c) {
+  double square[RIC_POLY_DEGREE + 1];
+  for (int j = 0; j <= RIC_POLY_DEGREE; j++) {
+    double cube = 0;
+    square[j] = 0;
+    for (int i = 0; i <= j; i++)
+      square[j] += x[i] * x[j - i];
+    for (int i = 0; i <= j; i++)
+      cube += x[i] * square[j - i];
+    double rate = j < RIC_POLY_DEGREE ? (j + 1) * x[j + 1] / length : 0;
+    c[j] -= factor * (s->linear * x[j] + s->quadratic * square[j] + s->cubic * cube + s->damping * rate);
+  }
+}
+
+/* Series of a column minus that of another; the second may be left out. */
+static void difference(const lattice_block *b, size_t column, size_t other, double *x) {
+  for (int j = 0; j <= RIC_POLY_DEGREE; j++)
+    x[j] = j > b->order ? 0 : b->c[(size_t)j * b->stride + column];
+  for (int j = 0; other != column && j <= b->order; j++)
+    x[j] -= b->c[(size_t)j * b->stride + other];
+}
+
+int lattice_series_force(const lattice_series *s, size_t particle, double *c) {
+  const lattice_block *b = &s->block;
+  const ric_lattice *l = s->lattice;
+  size_t n = l->particles, from_first = (particle + n - s->segment.first % n) % n, i = b->ghosts + from_first;
+  ric_spring own = ric_lattice_on_site(l, particle), left = ric_lattice_link(l, particle);
+  ric_spring right = ric_lattice_link(l, particle + 1);
+  double x[RIC_POLY_DEGREE + 1];
+  for (int j = 0; j <= RIC_POLY_DEGREE; j++) {
+    c[j] = 0;
+    if (l->force_cos)
+      c[j] += l->force_cos[particle] * s->cosine[j];
+    if (l->force_sin)
+      c[j] += l->force_sin[particle] * s->sine[j];
+  }
+  difference(b, i, i, x);
+  subtract_spring(&own, x, s->segment.length, 1, c);
+  difference(b, i, i - 1, x);
+  subtract_spring(&left, x, s->segment.length, 1, c);
+  difference(b, i + 1, i, x);
+  subtract_spring(&right, x, s->segment.length, -1, c);
+  unsigned longer = BLOCK_SITE_NONLINEAR | BLOCK_LINK_NONLINEAR | BLOCK_FORCED;
+  return b->terms & longer ? RIC_POLY_DEGREE : b->order;
+}
 
 static unsigned terms_of_spring(const ric_spring *s, unsigned damped, unsigned nonlinear) {
   return (s->damping != 0 ? damped : 0) | (s->quadratic != 0 || s->cubic != 0 ? nonlinear : 0);
@@ -74,6 +309,18 @@ static size_t padded(size_t columns) {
   return ((columns + 7) / 8 | 1) * 8;
 }
 
+void lattice_series_destroy(lattice_series **series) {
+  if (!series || !*series)
+    return;
+  block_presses *p = &(*series)->block.presses;
+  free(p->press);
+  free((*series)->held_column);
+  free((*series)->few);
+  free((*series)->store);
+  free(*series);
+  *series = NULL;
+}
+
 ric_status lattice_series_create(const ric_lattice *lattice, int order, size_t block, lattice_series **series,
                                  ric_error *error) {
   lattice_series *s = *series = calloc(1, sizeof *s);
@@ -101,18 +348,6 @@ ric_status lattice_series_create(const ric_lattice *lattice, int order, size_t b
 
 bool lattice_series_fits(const lattice_series *s, const ric_lattice *lattice) {
   return s->block.terms == terms_of(lattice);
-}
-
-void lattice_series_destroy(lattice_series **series) {
-  if (!series || !*series)
-    return;
-  block_presses *p = &(*series)->block.presses;
-  free(p->press);
-  free((*series)->held_column);
-  free((*series)->few);
-  free((*series)->store);
-  free(*series);
-  *series = NULL;
 }
 
 /* Most pressed contacts that a block with its halo may see. */
@@ -150,27 +385,6 @@ ric_status lattice_series_begin(lattice_series *s, const ric_lattice *lattice, c
   s->ring = lattice->ends == RIC_ENDS_PERIODIC && lattice->particles >= 3;
   s->loaded_count = 0;
   return reserve_presses(s, most_presses(s, &s->contacts), error);
-}
-
-bool series_next_run(const lattice_series *s, series_run *run) {
-  const lattice_block *b = &s->block;
-  if (b->whole) { /* one run between two ghosts */
-    bool first = run->count == 0;
-    *run = (series_run){.column = 1, .count = b->count};
-    return first;
-  }
-  size_t n = s->lattice->particles, width = b->count + 2 * b->ghosts;
-  ptrdiff_t begin = (ptrdiff_t)s->segment.first - (ptrdiff_t)b->ghosts, whole = (ptrdiff_t)n;
-  size_t column = run->column + run->count; /* behind the last run */
-  if (column == 0 && begin < 0 && !s->ring)
-    column = (size_t)-begin;
-  ptrdiff_t particle = begin + (ptrdiff_t)column;
-  if (column >= width || (particle >= whole && !s->ring))
-    return false;
-  size_t wrapped = (size_t)((particle % whole + whole) % whole);
-  size_t rest = n - wrapped, left = width - column;
-  *run = (series_run){.column = column, .particle = wrapped, .count = rest < left ? rest : left};
-  return true;
 }
 
 static void load_state(lattice_series *s, const double *q, const double *v, double length) {

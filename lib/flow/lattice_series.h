@@ -1,15 +1,18 @@
-/* Taylor series of lattices, block by block: internal to the library.
+/* The Taylor series of a lattice over a step, block by block. Internal to the library. */
+#ifndef RICOCHET_LATTICE_SERIES_H
+#define RICOCHET_LATTICE_SERIES_H
+
+#include "lattice_block.h"
+#include "ricochet/lattice.h"
+#include "ricochet/segment.h"
+#include "taylor_step.h"
+
+/* Taylor series of lattices, block by block.
  *
  * The coefficients of q(start + length x) in x of a stretch of particles, from the state of the whole lattice: O(n) per
  * step, vectorised over particles (lattice_block.h). A stretch that is not the whole lattice reads neighbours beyond
  * its ends: order / 2 of them, order - 1 with damped links. Coordinates may be held, and Hertz contacts may press;
  * which do is the caller's to say. Nothing here looks for contacts. */
-#ifndef RICOCHET_LATTICE_SERIES_H
-#define RICOCHET_LATTICE_SERIES_H
-
-#include "ricochet/lattice.h"
-#include "ricochet/segment.h"
-#include "taylor_step.h"
 
 enum {
   LATTICE_SERIES_BLOCK = 256, /* particles of a block: 27 coefficients of 282 particles are 61 kB */
@@ -71,5 +74,26 @@ ric_segment lattice_series_shorten(lattice_series *series, const double *q, cons
  *  @param c  [RIC_POLY_DEGREE + 1], all set; cubes and cosines go beyond the order of the series
  *  @returns the degree. */
 int lattice_series_force(const lattice_series *series, size_t particle, double *c);
+
+/* The workspace of lattice_series, for the files that share it. */
+
+enum { SERIES_POWERS = (RIC_POLY_DEGREE / 4 + 1) * 4 };
+
+struct lattice_series {
+  lattice_block block;
+  lattice_few *few; /* which makes the levels; NULL: the block does */
+  double *store;    /* all arrays of the block */
+  size_t halo;
+  const ric_lattice *lattice;
+  lattice_contacts contacts;
+  bool ring;
+  ric_segment segment; /* the last one */
+  size_t loaded_count; /* particles of the stretch whose rows are loaded, from segment.first on; 0: none */
+  size_t held_count;
+  size_t *held_column; /* [stride] */
+  double cosine[SERIES_POWERS], sine[SERIES_POWERS];
+  double turn;                 /* frequency times length of the steps for which there are */
+  double power[SERIES_POWERS]; /* turn^j / j! */
+};
 
 #endif

@@ -1,4 +1,14 @@
-/* Tangent vectors of a lattice along a step of its Taylor flow: internal to the flow.
+/* Tangent vectors of a lattice along a step: its stiffness as series, and the recurrence. Internal to the library. */
+#ifndef RICOCHET_LATTICE_VARIATION_H
+#define RICOCHET_LATTICE_VARIATION_H
+
+#include <stdint.h>
+
+#include "lattice_series.h"
+#include "model/system_model.h"
+#include "numeric/vectorised.h"
+
+/* Tangent vectors of a lattice along a step of its Taylor flow.
  *
  * Along the motion q(x) of a step, 0 <= x <= 1, tangent vectors obey the linearised equations. Their coefficients are
  * found by the recurrence of the state, several vectors side by side,
@@ -8,11 +18,6 @@
  * where K and C are the constant part and k_l the coefficients of what stiffness varies along the step: 2 a q + 3 b q^2
  * for quadratic and cubic springs, 3/2 k u^{1/2} for Hertz contacts, whose coefficients obey u r' = u' r / 2. Of the
  * springs whose stiffness varies the extensions are kept; else a coefficient is forgotten when it has been added up. */
-#ifndef RICOCHET_LATTICE_VARIATION_H
-#define RICOCHET_LATTICE_VARIATION_H
-
-#include "lattice_series.h"
-#include "model/system_model.h"
 
 typedef struct lattice_variation lattice_variation;
 
@@ -39,5 +44,53 @@ void lattice_variation_stiffen(lattice_variation *variation, const lattice_conta
 /** Moves tangent vectors to the end of the accepted part.
  *  @param held  coordinates that stay where they are */
 void lattice_variation_transport(lattice_variation *variation, const lattice_contacts *held, const tangents *d);
+
+/* What the two files of lattice variations share. */
+
+enum { LEVELS = 4 /* that are in use at a time */ };
+
+typedef struct stencil {
+  double *own, *left, *right; /* [n] over the mass */
+} stencil;
+
+static const size_t NO_PARTICLE = SIZE_MAX;
+
+/** A spring whose stiffness varies along steps: of the lattice, or a pressed Hertz contact. */
+typedef struct varying_spring {
+  size_t from, to; /* particles; NO_PARTICLE: wall or ground */
+  double quadratic, cubic;
+} varying_spring;
+
+/** What one such spring does to a particle. */
+typedef struct spring_pull {
+  size_t spring;
+  double weight; /* +-1 over the mass */
+} spring_pull;
+
+struct lattice_variation {
+  const ric_lattice *lattice;
+  size_t n;
+  int order;
+  bool ring, damped;
+  double length;
+  double *constants, *inverse_mass;
+  stencil springs, dampers;
+  bool *still;        /* [n] particles that are held; none between steps */
+  size_t *first_pull; /* [n + 1] those on particle i are pulls[first_pull[i]] and on */
+  spring_pull *pulls; /* [2 capacity] */
+  varying_spring *varying;
+  size_t capacity;       /* of springs that may vary */
+  size_t nonlinear;      /* of the lattice, the first of them */
+  size_t count;          /* in this step */
+  size_t compliant;      /* Hertz contacts that may press */
+  double *series;        /* the next two; NULL when nothing varies */
+  double *q;             /* [order + 1][n] coordinates over the accepted part */
+  double *k;             /* [capacity][order + 1] varying stiffness */
+  double *lanes;         /* the others */
+  double *levels;        /* [LEVELS][n + 2][WIDE] those in use */
+  double *sum_q, *sum_u; /* [n][WIDE] */
+  double *stretch;       /* [capacity][order + 1][WIDE] extensions by the tangent vectors */
+  double *force;         /* [capacity][2][WIDE] of the levels that are made */
+};
 
 #endif

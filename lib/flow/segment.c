@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-#include "vectorised.h"
+#include "numeric/vectorised.h"
 
 enum { LANES = 8 }; /* columns whose sums stay in registers */
 

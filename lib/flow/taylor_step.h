@@ -1,23 +1,23 @@
-/* Order and step of Taylor flows: internal to the room.
- *
- * Pure rules for every Taylor flow. A linear motion e^{s t} with |s| h <= r has coefficients r^j / j! and sums of
- * moduli below exp(r): a bound of |s| gives its step. Other motions are expanded over a trial step; c_j of a step theta
- * times as long is theta^j c_j, so that the last coefficients tell what the step may be. */
+/* Steps of Taylor flows: how order and length are chosen, and how a step is made. Internal to the library. */
 #ifndef RICOCHET_TAYLOR_STEP_H
 #define RICOCHET_TAYLOR_STEP_H
 
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "flow_method.h"
+
+/* Order and step of Taylor flows.
+ *
+ * Pure rules for every Taylor flow. A linear motion e^{s t} with |s| h <= r has coefficients r^j / j! and sums of
+ * moduli below exp(r): a bound of |s| gives its step. Other motions are expanded over a trial step; c_j of a step theta
+ * times as long is theta^j c_j, so that the last coefficients tell what the step may be. */
+
 /** Order at which linear motions take the longest step: 26 at 1e-16, between 4 and 30. */
 int taylor_order(double tolerance);
 
 /** Longest step times |s| for linear motions, at most 2.2, which a given order may not reach. */
 double taylor_reach(double tolerance, int order);
-
-/** Longest step times |s| with which tangent vectors of linear motions go, whatever the motion itself takes: 3.3 at
- *  order 26. A motion that leaves what is fast at rest says nothing about tangent vectors that do not. */
-double taylor_carried_reach(double tolerance, int order);
 
 /** Bound of |s| over the roots e^{s t} of q'' + C q' + K q = 0, from norms of K and C. */
 double taylor_rate_bound(double stiffness, double damping);
@@ -61,5 +61,38 @@ bool taylor_step_vanishes(double time, double length);
 
 /** A step that is just not lost. */
 double taylor_step_least(double time);
+
+/* Steps of Taylor flows: what a step's length follows from, and how it is chosen.
+ *
+ * A length comes from a bound of the rates where the flow trusts one, else from the decay of the coefficients; options,
+ * forcing and Hertz contacts shorten it, and the stop is met without a sliver. */
+
+typedef struct taylor_stepper {
+  ric_flow *flow; /* whose length and end are set */
+  /** Makes the series of a step of that signed length. */
+  taylor_decay (*expand)(ric_flow *flow, double length);
+  /** Turns the series that was made last into that of a shorter step. */
+  void (*shorten)(ric_flow *flow, double length);
+  bool by_bound; /* steps without Hertz contacts have the length `longest` */
+  int order;
+  double longest;         /* step of the fastest linear motion; INFINITY when nothing pulls */
+  double longest_carried; /* step that tangent vectors allow, whose rates are those of the linear springs */
+  double longest_forced;  /* step that the frequency of the forcing allows; INFINITY without */
+  double trial;           /* length at which the next series is made when its decay decides */
+} taylor_stepper;
+
+/** Sets order, lengths and trial from the options of the flow.
+ *  @param rate  bound of |s| of the linear motions e^{s t}
+ *  @param frequency  of the forcing; 0 without */
+void taylor_stepper_plan(taylor_stepper *stepper, double rate, double frequency);
+
+/** Length of the first series where the linear motions say nothing: problems are dimensionless. */
+double taylor_stepper_natural(const taylor_stepper *stepper);
+
+/** Chooses a step towards `stop`, with its series, and sets length and end of the flow.
+ *  @param limit  longest step for which forces that are left out do not matter
+ *  @param pressed  Hertz contacts act: steps follow from the decay, a prescribed length is the longest one
+ *  @returns RIC_ENUMERIC when the motion blows up; the flow is as it was. */
+ric_status taylor_stepper_choose(taylor_stepper *stepper, double stop, double limit, bool pressed, ric_error *error);
 
 #endif

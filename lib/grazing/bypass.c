@@ -1,8 +1,263 @@
+/* The bypass (discontinuity) map: where its gap is smallest, the map itself, and kappa, its second order. */
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "bypass_parts.h"
+#include "impact/impact_law.h"
+#include "impact/locate.h"
+#include "local.h"
+#include "numeric/largest.h"
+#include "shooting/arcs.h"
+
+/* Where the gap of the free motion is smallest, and where it opens, forwards and backwards in time.
+ *
+ * The gap is followed by its rate: on the steps of a short motion the gap itself may vary by less than its rounding
+ * where the rate still varies by many times its own. Rates are polynomials on the segments of the flow; their
+ * integrals are searched with certainty (polynomial.h). */
+
+typedef struct gap_search {
+  ric_flow *flow; /* borrowed */
+  size_t obstacle;
+  gap_reader reader;
+} gap_search;
+
+/* A short way of the free motion in one go.
+ *
+ * A flow with variable order starts with short steps of low order, each as wrong as its tolerance allows: after a way
+ * of 1e-6 the gap of a motion that grazes by 1e-13 is lost in that. Here Gragg's midpoint rule is extrapolated
+ * (Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I, section II.9), which over times that are short
+ * for the motion errs by rounding only; where it does not, it says so. */
+
+typedef struct gragg {
+  const ric_system *system;
+  double *rows;                /* [GRAGG_ROWS][n + m] extrapolations of one row, over those of the row before */
+  double *before, *now, *rate; /* [n + m] ways from the start; rates of change */
+  double *point;               /* [n + m] */
+} gragg;
+
+enum { GRAGG_ROWS = 9 }; /* of 2, 4, 6, ... midpoint steps */
+
+static const double least_state = 1e-3; /* of a state, as flows have it */
+
+static ric_status gragg_init(gragg *l, const ric_system *system, ric_error *error) {
+  size_t size = system->coordinates + system->speeds;
+  *l = (gragg){.system = system, .rows = malloc((GRAGG_ROWS + 4) * size * sizeof *l->rows)};
+  if (!l->rows)
+    return ric_fail(error, RIC_ENOMEM, "no memory for states of %zu numbers", size);
+  l->before = l->rows + GRAGG_ROWS * size;
+  l->now = l->before + size;
+  l->rate = l->now + size;
+  l->point = l->rate + size;
+  return RIC_OK;
+}
+
+static void gragg_clear(gragg *l) {
+  free(l->rows);
+}
+
+static bool gragg_rate(gragg *l, double t) {
+  const ric_system *s = l->system;
+  size_t n = s->coordinates;
+  return s->model->rate(s, NULL, t, l->point, l->point + n, l->rate, l->rate + n) == NULL;
+}
+
+/* The way from x after `steps` steps, in l->now. */
+static bool gragg_midpoint(gragg *l, double t, double dt, const double *x, int steps) {
+  size_t size = l->system->coordinates + l->system->speeds;
+  double h = dt / steps;
+  memset(l->before, 0, size * sizeof *l->before);
+  memset(l->now, 0, size * sizeof *l->now);
+  for (int k = 0; k < steps; k++) {
+    for (size_t i = 0; i < size; i++)
+      l->point[i] = x[i] + l->now[i];
+    if (!gragg_rate(l, t + k * h))
+      return false;
+    for (size_t i = 0; i < size; i++) {
+      double next = l->before[i] + (k == 0 ? h : 2 * h) * l->rate[i];
+      l->before[i] = l->now[i];
+      l->now[i] = next;
+    }
+  }
+  return true;
+}
+
+/* Adds row `row` to the Aitken-Neville scheme, whose last row is kept, highest order first; returns by how much the
+ * highest order changed what the one below it says. */
+static double gragg_extrapolate(gragg *l, int row) {
+  size_t size = l->system->coordinates + l->system->speeds;
+  double change = 0;
+  for (int order = 1; order <= row; order++) {
+    double ratio = (double)(row + 1) / (row + 1 - order), divisor = ratio * ratio - 1;
+    double *coarse = l->rows + (size_t)(order - 1) * size; /* of the row before; this row's takes its place */
+    change = 0;
+    for (size_t i = 0; i < size; i++) {
+      double fine = l->now[i], step = (fine - coarse[i]) / divisor;
+      coarse[i] = fine;
+      l->now[i] = fine + step;
+      change = fmax(change, fabs(step));
+    }
+  }
+  memcpy(l->rows + (size_t)row * size, l->now, size * sizeof *l->now);
+  return row > 0 ? change : INFINITY;
+}
+
+/** Moves a state by dt, when callbacks work and the extrapolation converges to `tolerance` of the size of the state, or
+ *  of 1e-3 when that is larger. @returns whether it has; x is untouched otherwise. */
+static bool gragg_move(gragg *l, double t, double dt, double *x, double tolerance) {
+  size_t size = l->system->coordinates + l->system->speeds;
+  double scale = fmax(largest(x, size), least_state), change, best = INFINITY;
+  for (int row = 0; row < GRAGG_ROWS && !(best <= DBL_EPSILON / 4 * scale); row++) {
+    if (!gragg_midpoint(l, t, dt, x, 2 * (row + 1)))
+      return false;
+    change = gragg_extrapolate(l, row);
+    if (row > 0 && !(change < best)) /* rounding, or no convergence */
+      break;
+    best = change;
+  }
+  if (!(best <= tolerance * scale))
+    return false;
+  for (size_t i = 0; i < size; i++)
+    x[i] += l->now[i];
+  return true;
+}
+
+/* The bypass map of one obstacle. */
+
+struct ric_bypass {
+  ric_system *system;
+  size_t obstacle, size; /* n + m */
+  double reach;
+  arc_runner runner;
+  bool short_ways; /* short ways are not for the flow to move */
+  gragg gragg;
+  gap_search search;
+  impact_solver law;
+  double *x, *rates; /* [n + m] a state on the way; rates of change */
+  double time;       /* of x */
+};
+
+enum { HALVINGS = 30 }; /* of a segment on which the gap rate is not resolved */
+
+static ric_status gap_search_init(gap_search *s, ric_flow *flow, size_t obstacle, ric_error *error) {
+  *s = (gap_search){.flow = flow, .obstacle = obstacle};
+  return gap_reader_init(&s->reader, flow, error);
+}
+
+static void gap_search_clear(gap_search *s) {
+  gap_reader_clear(&s->reader);
+}
+
+/* One search along the motion; slopes are those along it, against time when it runs backwards. */
+typedef struct way {
+  gap_search *s;
+  bool opening;        /* else a minimum */
+  double level, slope; /* of the gap, where the last part ended */
+  double time;         /* found */
+  const char *trouble;
+} way;
+
+/* The gap [degree + 2] on a part, from its rate there. */
+static int integrate(const gap_part *rate, double length, double level, double *c) {
+  double width = (rate->to - rate->from) * length;
+  c[0] = level;
+  for (int j = 0; j <= rate->degree; j++)
+    c[j + 1] = rate->c[j] * width / (j + 1);
+  return rate->degree + 1;
+}
+
+static bool finds(const way *w, const double *c, int degree, double *at) {
+  double value, below[RIC_POLY_DEGREE + 2];
+  if (w->opening) {
+    for (int j = 0; j <= degree; j++)
+      below[j] = -c[j];
+    return ric_poly_first_root(below, degree, at);
+  }
+  if (w->slope < 0 && c[1] > 0) { /* between the last part and this one */
+    *at = 0;
+    return true;
+  }
+  return ric_poly_first_minimum(c, degree, INFINITY, at, &value);
+}
+
+static bool look_at_part(way *w, const ric_segment *piece, const gap_part *rate) {
+  double c[RIC_POLY_DEGREE + 2], at;
+  int degree = integrate(rate, piece->length, w->level, c);
+  if (finds(w, c, degree, &at)) {
+    w->time = piece->start + (rate->from + at * (rate->to - rate->from)) * piece->length;
+    return true;
+  }
+  w->level = ric_poly_value(c, degree, 1, &w->slope);
+  return false;
+}
+
+/* Whether it is found on [from, to] of a piece, or there is trouble. */
+static bool search_segment(way *w, const ric_segment *piece, double from, double to, double before, int halvings) {
+  gap_part rate;
+  w->trouble = gap_read(&w->s->reader, piece, w->s->obstacle, WATCH_RATE, from, to, &rate);
+  if (w->trouble)
+    return true;
+  if (gap_is_resolved(&rate, before) || halvings == 0)
+    return look_at_part(w, piece, &rate);
+  double middle = (from + to) / 2;
+  return search_segment(w, piece, from, middle, rate.residual, halvings - 1) ||
+         search_segment(w, piece, middle, to, rate.residual, halvings - 1);
+}
+
+static bool look_at_step(way *w) {
+  ric_flow *flow = w->s->flow;
+  const ric_system *system = flow->system;
+  for (size_t i = 0; i < ric_flow_pieces(flow); i++) {
+    ric_segment piece = ric_flow_piece(flow, i);
+    size_t coordinate = system->obstacles ? system->obstacles[w->s->obstacle].coordinate : 0;
+    if (coordinate < piece.first || coordinate - piece.first >= piece.coordinates)
+      continue;
+    gap_reader_reset(&w->s->reader);
+    if (search_segment(w, &piece, 0, 1, INFINITY, HALVINGS))
+      return true;
+  }
+  return false;
+}
+
+static ric_status search_way(way *w, double t, const double *x, double span, ric_error *error) {
+  ric_flow *flow = w->s->flow;
+  double end = t + span;
+  RIC_TRY(ric_flow_start(flow, t, x, x + flow->system->coordinates, error));
+  while (ric_flow_time(flow) != end) {
+    ric_status status = ric_flow_step(flow, end, error);
+    if (status == RIC_ENUMERIC) /* nothing is to be found where the motion ends */
+      return RIC_OK;
+    RIC_TRY(status);
+    if (look_at_step(w))
+      break;
+    ric_flow_accept(flow, 1);
+  }
+  if (w->trouble)
+    return ric_fail(error, RIC_ECALLBACK, "from t = %g, obstacle %zu: %s", t, w->s->obstacle, w->trouble);
+  return RIC_OK;
+}
+
+/** First local minimum of the gap on the way from a state.
+ *  @param span  signed length of the way in time, not 0
+ *  @param rate  gap rate at the state
+ *  @param time  set; NaN when there is none, or when the motion ends before
+ *  @returns RIC_ECALLBACK, RIC_EINVAL as ric_flow_start. */
+static ric_status gap_search_minimum(gap_search *s, double t, const double *x, double span, double rate, double *time,
+                                     ric_error *error) {
+  way w = {.s = s, .slope = copysign(1, span) * rate, .time = NAN};
+  RIC_TRY(search_way(&w, t, x, span, error));
+  *time = w.time;
+  return RIC_OK;
+}
+
+/** First time at which the gap, `depth` <= 0 at the state, is zero again; parameters as above. */
+static ric_status gap_search_opening(gap_search *s, double t, const double *x, double span, double depth, double *time,
+                                     ric_error *error) {
+  way w = {.s = s, .opening = true, .level = depth, .time = NAN};
+  RIC_TRY(search_way(&w, t, x, span, error));
+  *time = w.time;
+  return RIC_OK;
+}
 
 /* A minimum within this part of the reach, as the rate and its derivative foretell it, is the nearest: motions are
  * smooth over a part of the reach that is larger by far. */
@@ -16,7 +271,7 @@ static const double settled_part = 1e-6;
 static const double turn_tol = 1e-6, turn_rounding = 1e-10;
 
 /* A short way is as good as this part of the flow's tolerance, which the flow takes at every step of a way. */
-static const double leap_part = 0.01;
+static const double gragg_part = 0.01;
 
 enum { NEWTON_STEPS = 12 };
 
@@ -24,7 +279,8 @@ ric_bypass_options ric_bypass_options_default(void) {
   return (ric_bypass_options){.flow = ric_flow_options_default(), .reach = 1};
 }
 
-static ric_status check(const ric_system *system, size_t obstacle, const ric_bypass_options *o, ric_error *error) {
+static ric_status check_bypass(const ric_system *system, size_t obstacle, const ric_bypass_options *o,
+                               ric_error *error) {
   RIC_TRY(grazing_check_obstacle(system, obstacle, error));
   if (!(o->reach > 0 && o->reach < INFINITY))
     return ric_fail(error, RIC_EINVAL, "reach = %g, expected a finite number > 0", o->reach);
@@ -39,8 +295,8 @@ static ric_status check(const ric_system *system, size_t obstacle, const ric_byp
 
 static ric_status build(ric_bypass *b, const ric_bypass_options *options, ric_error *error) {
   RIC_TRY(arc_runner_init(&b->runner, b->system, &options->flow, (ric_poll){0}, error));
-  b->leaps = arc_runner_flow(&b->runner)->options.method == RIC_FLOW_CVODES;
-  RIC_TRY(leap_init(&b->leap, b->system, error));
+  b->short_ways = arc_runner_flow(&b->runner)->options.method == RIC_FLOW_CVODES;
+  RIC_TRY(gragg_init(&b->gragg, b->system, error));
   RIC_TRY(gap_search_init(&b->search, arc_runner_flow(&b->runner), b->obstacle, error));
   RIC_TRY(impact_solver_init(&b->law, b->system, error));
   RIC_TRY(impact_solver_reserve(&b->law, 1, error));
@@ -51,11 +307,24 @@ static ric_status build(ric_bypass *b, const ric_bypass_options *options, ric_er
   return RIC_OK;
 }
 
+void ric_bypass_destroy(ric_bypass **bypass) {
+  if (!bypass || !*bypass)
+    return;
+  ric_bypass *b = *bypass;
+  gap_search_clear(&b->search);
+  gragg_clear(&b->gragg);
+  impact_solver_clear(&b->law);
+  arc_runner_clear(&b->runner);
+  free(b->x);
+  free(b);
+  *bypass = NULL;
+}
+
 ric_status ric_bypass_create(ric_system *system, size_t obstacle, const ric_bypass_options *options,
                              ric_bypass **bypass, ric_error *error) {
   ric_bypass_options o = options ? *options : ric_bypass_options_default();
   *bypass = NULL;
-  RIC_TRY(check(system, obstacle, &o, error));
+  RIC_TRY(check_bypass(system, obstacle, &o, error));
   ric_bypass *b = calloc(1, sizeof *b);
   if (!b)
     return ric_fail(error, RIC_ENOMEM, "no memory for a bypass map");
@@ -71,23 +340,10 @@ ric_status ric_bypass_create(ric_system *system, size_t obstacle, const ric_bypa
   return status;
 }
 
-void ric_bypass_destroy(ric_bypass **bypass) {
-  if (!bypass || !*bypass)
-    return;
-  ric_bypass *b = *bypass;
-  gap_search_clear(&b->search);
-  leap_clear(&b->leap);
-  impact_solver_clear(&b->law);
-  arc_runner_clear(&b->runner);
-  free(b->x);
-  free(b);
-  *bypass = NULL;
-}
-
 /* Along the free motion. */
 static ric_status move_to(ric_bypass *b, double time, ric_error *error) {
-  double tolerance = leap_part * arc_runner_flow(&b->runner)->options.tolerance, from = b->time;
-  if (b->leaps && leap_move(&b->leap, from, time - from, b->x, tolerance)) {
+  double tolerance = gragg_part * arc_runner_flow(&b->runner)->options.tolerance, from = b->time;
+  if (b->short_ways && gragg_move(&b->gragg, from, time - from, b->x, tolerance)) {
     b->time = time;
     return RIC_OK;
   }
@@ -236,4 +492,111 @@ ric_status ric_bypass_leading(ric_bypass *b, const ric_grazing_local *at_grazing
   if (seen)
     *seen = found;
   return RIC_OK;
+}
+
+/* kappa, the coefficient of y^2 in the bypass map.
+ *
+ * Seen from x = x* - y^2 n with eta n = 1, psi(x) = -y^2 + O(y^4), and (C(x) - x) / y^2 - s xi / y = kappa + O(y) is
+ * a series in y. Another n moves x along the surface psi = const by O(y^2), and that changes C - x by O(y |x - x*|),
+ * which is O(y^3): kappa does not depend on it. Here n is along eta.
+ *
+ * The limit y -> 0 is by Neville's scheme, as far as rounding allows: that of psi over y^3, and the error of s, whose
+ * A_g comes from differences where the gap is a user's, over y. Without s, as the slope of (C(x) - x) / y, kappa has
+ * three digits less: one order is lost at each level. */
+
+enum { LEVELS = 7, SKIPPED = 8 }; /* halvings of y; and those before the map works at all */
+
+/* Time that the first one of the states spends behind the obstacle until the minimum, as a part of the reach; no more
+ * than that of a motion whose times are of order one. */
+static const double first_part = 0.25;
+
+/* Neville's scheme towards y = 0, one row per level of y. */
+typedef struct scheme {
+  ric_bypass *b;
+  const ric_grazing_local *at;
+  double t;
+  const double *x;
+  double *row, *last;      /* [LEVELS][n + m] orders of this level and of the one before */
+  double *state, *image;   /* [n + m] */
+  double *best;            /* [n + m] slope so far */
+  double y[LEVELS], error; /* of best */
+  int level;
+} scheme;
+
+/* (C(z) - z) / y^2 - s xi / y at z = x - depth eta / |eta|^2. */
+static ric_status sample(scheme *k, double depth, ric_error *error) {
+  const ric_grazing_local *at = k->at;
+  size_t size = k->b->size;
+  double square = 0, s = sqrt(2 * at->acceleration);
+  ric_bypass_seen seen;
+  for (size_t i = 0; i < size; i++)
+    square += at->eta[i] * at->eta[i];
+  for (size_t i = 0; i < size; i++)
+    k->state[i] = k->x[i] - depth * at->eta[i] / square;
+  RIC_TRY(ric_bypass_map(k->b, k->t, k->state, k->image, &seen, error));
+  double y = k->y[k->level] = sqrt(fmax(-seen.psi, 0));
+  if (!(y > 0))
+    return ric_fail(error, RIC_ENUMERIC, "the gap is %.3g at a state %.3g behind grazing, expected less than zero",
+                    seen.psi, depth);
+  for (size_t i = 0; i < size; i++)
+    k->row[i] = ((k->image[i] - k->state[i]) / y - s * at->xi[i]) / y;
+  return RIC_OK;
+}
+
+static double difference(const double *a, const double *b, size_t size) {
+  double most = 0;
+  for (size_t i = 0; i < size; i++)
+    most = fmax(most, fabs(a[i] - b[i]));
+  return most;
+}
+
+/* The orders of this level. An entry is as good as it agrees with the two it is made of: beyond the best one rounding
+ * takes over. */
+static void extrapolate(scheme *k) {
+  size_t size = k->b->size;
+  for (int order = 1; order <= k->level; order++) {
+    const double *fine = k->row + (size_t)(order - 1) * size, *coarse = k->last + (size_t)(order - 1) * size;
+    double *now = k->row + (size_t)order * size, ratio = k->y[k->level - order] / k->y[k->level];
+    for (size_t i = 0; i < size; i++)
+      now[i] = fine[i] + (fine[i] - coarse[i]) / (ratio - 1);
+    double error = fmax(difference(now, fine, size), difference(now, coarse, size));
+    if (!(error < k->error))
+      continue;
+    k->error = error;
+    memcpy(k->best, now, size * sizeof *now);
+  }
+}
+
+static ric_status run(scheme *k, ric_error *error) {
+  double time = first_part * fmin(1, k->b->reach), rate = k->at->acceleration / 2;
+  for (int skipped = 0; k->level < LEVELS; time /= 2) {
+    ric_status status = sample(k, rate * time * time, error);
+    if (status == RIC_ENUMERIC && k->level == 0 && skipped++ < SKIPPED)
+      continue;
+    RIC_TRY(status);
+    extrapolate(k);
+    double *row = k->row;
+    k->row = k->last;
+    k->last = row;
+    k->level++;
+  }
+  return RIC_OK;
+}
+
+ric_status ric_bypass_second(ric_bypass *b, const ric_grazing_local *at_grazing, double t, const double *x,
+                             double *kappa, ric_error *error) {
+  RIC_TRY(grazing_check_local(at_grazing, b->system, error));
+  double *work = malloc((2 * LEVELS + 3) * b->size * sizeof *work);
+  if (!work)
+    return ric_fail(error, RIC_ENOMEM, "no memory for an extrapolation of %zu numbers", b->size);
+  scheme k = {.b = b, .at = at_grazing, .t = t, .x = x, .row = work, .error = INFINITY};
+  k.last = k.row + LEVELS * b->size;
+  k.state = k.last + LEVELS * b->size;
+  k.image = k.state + b->size;
+  k.best = k.image + b->size;
+  ric_status status = run(&k, error);
+  if (status == RIC_OK)
+    memcpy(kappa, k.best, b->size * sizeof *kappa);
+  free(work);
+  return status;
 }

@@ -1,3 +1,4 @@
+/* The dominant multiplier of the map beside grazing, in balanced coordinates, and the coefficients eta L^i xi. */
 #include "dominant.h"
 
 #include <float.h>
@@ -10,8 +11,104 @@
 #include <gsl/gsl_eigen.h>
 #include <gsl/gsl_linalg.h>
 
+#include "numeric/largest.h"
+#include "numeric/number_block.h"
+
+/* Coordinates that L does not couple are balanced by eta and xi alone, by no more than 2 to this. */
+enum { most_exponent = 100 };
+
+double *balanced_map_room(size_t n, size_t matrices, size_t vectors) {
+  if (n > SIZE_MAX / sizeof(double) / matrices / 2 / n || n > SIZE_MAX / sizeof(double) / vectors / 2)
+    return NULL;
+  return calloc(n * n * matrices + n * vectors, sizeof(double));
+}
+
+void balanced_map_clear(balanced_map *b) {
+  free(b->block);
+  *b = (balanced_map){0};
+}
+
+/* Divides by a power of two that leaves the largest below 1. @returns its exponent */
+static long normalise(double *x, size_t count) {
+  int exponent;
+  frexp(largest(x, count), &exponent);
+  for (size_t i = 0; i < count; i++)
+    x[i] = scalbn(x[i], -exponent);
+  return exponent;
+}
+
+/* |eta_k| = |xi_k| to a factor of two, where neither is zero. */
+static void balance_vectors(balanced_map *b) {
+  for (size_t k = 0; k < b->n; k++) {
+    int of_eta, of_xi, exponent = 0;
+    frexp(b->eta[k], &of_eta);
+    frexp(b->xi[k], &of_xi);
+    if (b->eta[k] != 0 && b->xi[k] != 0)
+      exponent = (of_xi - of_eta) / 2;
+    exponent = exponent > most_exponent ? most_exponent : exponent < -most_exponent ? -most_exponent : exponent;
+    b->scale[k] = ldexp(1, exponent);
+  }
+  for (size_t k = 0; k < b->n; k++)
+    for (size_t l = 0; l < b->n; l++)
+      b->L[k * b->n + l] *= b->scale[l] / b->scale[k];
+}
+
+/* Rows and columns of L are made of one size where L couples coordinates. */
+static ric_status balance_matrix(balanced_map *b, ric_error *error) {
+  size_t n = b->n;
+  gsl_vector *further = gsl_vector_alloc(n);
+  if (!further)
+    return ric_fail(error, RIC_ENOMEM, "no memory for a map of size %zu", n);
+  gsl_matrix_view L = gsl_matrix_view_array(b->L, n, n);
+  gsl_linalg_balance_matrix(&L.matrix, further);
+  for (size_t k = 0; k < n; k++)
+    b->scale[k] *= gsl_vector_get(further, k);
+  gsl_vector_free(further);
+  return RIC_OK;
+}
+
+static ric_status balance(balanced_map *b, ric_error *error) {
+  size_t n = b->n;
+  b->L_exponent = normalise(b->L, n * n);
+  b->c_exponent = normalise(b->eta, n) + normalise(b->xi, n);
+  balance_vectors(b);
+  RIC_TRY(balance_matrix(b, error));
+  double sum = 0;
+  for (size_t k = 0; k < n; k++) {
+    b->eta[k] *= b->scale[k];
+    b->xi[k] /= b->scale[k];
+    sum += fabs(b->eta[k]) + fabs(b->xi[k]);
+  }
+  if (!(isfinite(sum) && isfinite(largest(b->L, n * n))))
+    return ric_fail(error, RIC_ENUMERIC, "the map has numbers too far apart to be balanced");
+  b->L_exponent += normalise(b->L, n * n);
+  b->c_exponent += normalise(b->eta, n) + normalise(b->xi, n);
+  gsl_vector_view entries = gsl_vector_view_array(b->L, n * n);
+  b->size = gsl_blas_dnrm2(&entries.vector);
+  return RIC_OK;
+}
+
+ric_status balanced_map_init(balanced_map *b, const ric_grazing_map *map, ric_error *error) {
+  size_t n = map->size, used = 0;
+  *b = (balanced_map){.n = n, .block = balanced_map_room(n, 1, 3)};
+  if (!b->block)
+    return ric_fail(error, RIC_ENOMEM, "no memory for a map of size %zu", n);
+  b->L = number_block_take(b->block, &used, n * n);
+  b->eta = number_block_take(b->block, &used, n);
+  b->xi = number_block_take(b->block, &used, n);
+  b->scale = number_block_take(b->block, &used, n);
+  memcpy(b->L, map->L, n * n * sizeof *b->L);
+  memcpy(b->eta, map->eta, n * sizeof *b->eta);
+  memcpy(b->xi, map->xi, n * sizeof *b->xi);
+  ric_status status = balance(b, error);
+  if (status != RIC_OK)
+    balanced_map_clear(b);
+  return status;
+}
+
 /* Eigenvectors with larger errors say nothing: components would have to be a tenth of eta and xi to be seen. */
 static const double accuracy_tol = 1e-3;
+
 /* Rounding in eigenproblems of size n, in units of n: ten times and more what is observed. */
 static const double rounding_unit = 10 * DBL_EPSILON;
 
@@ -105,7 +202,7 @@ static double dot_moduli(const double *x, const double *y, size_t n) {
 
 /* What eta and xi see: nothing, if less than zero_tol of the terms, or than a hundred times what rounding makes of it.
  */
-static void look_at_components(dominant_multiplier *d, const balanced_map *map, double condition, double zero_tol) {
+static void evaluate_components(dominant_multiplier *d, const balanced_map *map, double condition, double zero_tol) {
   size_t n = map->n;
   double rounding = 100 * d->accuracy;
   double of_seen = zero_tol * dot_moduli(map->eta, d->right, n);
@@ -119,7 +216,7 @@ static void look_at_components(dominant_multiplier *d, const balanced_map *map, 
 }
 
 /* `gap`: the distance to other multipliers, or from L - lambda to a matrix with two of them, if that is less. */
-static void look(dominant_multiplier *d, const balanced_map *map, double gap, double zero_tol) {
+static void evaluate_dominant(dominant_multiplier *d, const balanced_map *map, double gap, double zero_tol) {
   size_t n = map->n;
   double product = dot(d->left, d->right, n);
   for (size_t k = 0; k < n; k++)
@@ -130,7 +227,7 @@ static void look(dominant_multiplier *d, const balanced_map *map, double gap, do
   d->accuracy = change / gap;
   if (!isfinite(d->accuracy))
     d->accuracy = INFINITY;
-  look_at_components(d, map, condition, zero_tol);
+  evaluate_components(d, map, condition, zero_tol);
 }
 
 /* Singular vectors of L - lambda I to the singular value zero are both eigenvectors at once. */
@@ -160,7 +257,7 @@ static ric_status find_vectors(dominant_multiplier *d, const balanced_map *map, 
     d->left[k] = gsl_matrix_get(left, k, n - 1);
   }
   double gap = d->modulus - d->second;
-  look(d, map, n > 1 ? fmin(gap, gsl_vector_get(singular, n - 2)) : gap, zero_tol);
+  evaluate_dominant(d, map, n > 1 ? fmin(gap, gsl_vector_get(singular, n - 2)) : gap, zero_tol);
 out:
   gsl_matrix_free(left);
   gsl_matrix_free(right);
@@ -179,4 +276,108 @@ ric_status dominant_find(dominant_multiplier *d, const balanced_map *map, double
   if (status != RIC_OK)
     dominant_clear(d);
   return status;
+}
+
+/* No numbers of a map are known better than to this, relative to the norm; rounding adds less up to size 1000. */
+static const double entry_tol = 1e-12;
+
+static double length(const double *x, size_t n) {
+  gsl_vector_const_view view = gsl_vector_const_view_array(x, n);
+  return gsl_blas_dnrm2(&view.vector);
+}
+
+static void evaluate(coefficient_run *run) {
+  run->value = run->terms = 0;
+  for (size_t k = 0; k < run->map->n; k++) {
+    double term = run->map->eta[k] * run->x[k];
+    run->value += term;
+    run->terms += fabs(term);
+  }
+}
+
+ric_status coefficient_run_init(coefficient_run *run, const balanced_map *map, const dominant_multiplier *dominant,
+                                ric_error *error) {
+  size_t n = map->n, used = 0;
+  double *block = balanced_map_room(n, 1, 3);
+  double modulus = dominant->modulus;
+  *run = (coefficient_run){.map = map, .modulus = modulus, .vague = log2(dominant->vague)};
+  if (!block)
+    return ric_fail(error, RIC_ENOMEM, "no memory for the coefficients of a map of size %zu", n);
+  run->x = number_block_take(block, &used, n);
+  run->row = number_block_take(block, &used, n);
+  run->next = number_block_take(block, &used, n);
+  memcpy(run->x, map->xi, n * sizeof *run->x);
+  memcpy(run->row, map->eta, n * sizeof *run->row);
+  run->noise[0] = (noise_bound){.rate = modulus > 0 ? modulus : map->size, .most = -INFINITY};
+  run->noise[1] = (noise_bound){.rate = map->size, .most = -INFINITY};
+  evaluate(run);
+  return RIC_OK;
+}
+
+void coefficient_run_clear(coefficient_run *run) {
+  free(run->x);
+  *run = (coefficient_run){0};
+}
+
+/* x becomes L x, or x L, over a power of two. @returns its exponent */
+static int multiply(coefficient_run *run, double *x, CBLAS_TRANSPOSE_t transposed) {
+  size_t n = run->map->n;
+  int exponent;
+  gsl_matrix_const_view L = gsl_matrix_const_view_array(run->map->L, n, n);
+  gsl_vector_const_view from = gsl_vector_const_view_array(x, n);
+  gsl_vector_view to = gsl_vector_view_array(run->next, n);
+  gsl_blas_dgemv(transposed, 1, &L.matrix, &from.vector, 0, &to.vector);
+  frexp(largest(run->next, n), &exponent);
+  for (size_t k = 0; k < n; k++)
+    x[k] = scalbn(run->next[k], -exponent);
+  return exponent;
+}
+
+static void add_noise(coefficient_run *run) {
+  double row = log2(length(run->row, run->map->n)) + (double)run->row_exponent;
+  double x = run->map->size * length(run->x, run->map->n);
+  for (size_t k = 0; k < 2; k++) {
+    noise_bound *noise = &run->noise[k];
+    noise->most = fmax(noise->most, run->i > 0 ? row - (double)run->i * log2(noise->rate) : row);
+    noise->sum = noise->rate * noise->sum + x;
+  }
+}
+
+void coefficient_run_advance(coefficient_run *run) {
+  add_noise(run);
+  int exponent = multiply(run, run->x, CblasNoTrans);
+  for (size_t k = 0; k < 2; k++)
+    run->noise[k].sum = scalbn(run->noise[k].sum, -exponent);
+  run->x_exponent += exponent;
+  run->row_exponent += multiply(run, run->row, CblasTrans);
+  run->i++;
+  evaluate(run);
+}
+
+static double noise_of(const noise_bound *noise) {
+  double reach = exp2(noise->most) * noise->sum;
+  return isnan(reach) ? INFINITY : reach;
+}
+
+/* Of the dominant multiplier's part. */
+static double vague_part(const coefficient_run *run) {
+  double reach = run->vague - (double)run->x_exponent;
+  return exp2(run->i > 0 ? reach + (double)run->i * log2(run->modulus) : reach);
+}
+
+int coefficient_run_sign(const coefficient_run *run, double zero_tol) {
+  double unit = fmax((double)run->map->n * DBL_EPSILON, entry_tol);
+  double noise = run->i > 0 ? unit * fmin(noise_of(&run->noise[0]), noise_of(&run->noise[1])) : 0;
+  double tolerance = fmax(zero_tol, unit) * run->terms + noise + vague_part(run);
+  if (!(fabs(run->value) > tolerance))
+    return 0;
+  return run->value > 0 ? 1 : -1;
+}
+
+bool coefficient_run_over(const coefficient_run *run) {
+  return largest(run->x, run->map->n) == 0;
+}
+
+double coefficient_run_value(const coefficient_run *run) {
+  return scalbln(run->value, run->x_exponent + run->map->c_exponent + (long)run->i * run->map->L_exponent);
 }

@@ -1,12 +1,191 @@
-/* Grazing motions: found along a family, and made exact. */
-#include "ricochet/grazing.h"
-
+/* Grazing motions: found along a family, made exact, refused where degenerate; their curves in two parameters. */
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "degenerate.h"
-#include "grazing_parts.h"
+#include "family/family.h"
+#include "ricochet/grazing.h"
+#include "section.h"
+#include "shooting/shooting.h"
+
+/* Where the gap of a motion has a minimum. */
+
+/** A minimum of a gap along a solution of shooting. */
+typedef struct touch {
+  size_t obstacle;
+  double time; /* in [0, T) */
+  double gap, rate, acceleration;
+  double *x;     /* [n + m] state there; of the caller */
+  double *rates; /* [n + m] of the free motion */
+} touch;
+
+enum { MOST_MINIMUM_STEPS = 30 };
+
+/* Steps below this part of the period no longer move the minimum. */
+static const double minimum_tol = 1e-15;
+
+/* Steps of Newton's method are not to leave the minimum it starts at. */
+static const double longest_step = 0.05;
+
+/* Into [0, T): a time below zero by less than rounding at T is zero. */
+static double folded(double time, double period) {
+  const double t = fmod(time, period), shifted = t < 0 ? t + period : t;
+  return shifted < period ? shifted : 0;
+}
+
+static ric_status read_gap(const ric_system *s, touch *k, ric_error *error) {
+  const size_t n = s->coordinates;
+  const double t = k->time;
+  RIC_TRY(ric_system_rate(s, t, k->x, k->x + n, k->rates, k->rates + n, error));
+  const char *trouble = s->model->gap(s, k->obstacle, t, k->x, &k->gap);
+  if (!trouble)
+    trouble = s->model->gap_rate(s, k->obstacle, t, k->x, k->x + n, &k->rate);
+  if (!trouble)
+    trouble = s->model->gap_acceleration(s, k->obstacle, t, k->x, k->x + n, k->rates, k->rates + n, &k->acceleration);
+  return trouble ? ric_fail(error, RIC_ECALLBACK, "at t = %g, obstacle %zu: %s", t, k->obstacle, trouble) : RIC_OK;
+}
+
+/* Where the gap is not convex, a step down its slope. */
+static double step_of(const touch *k, double period) {
+  const double step = -k->rate / fabs(k->acceleration), most = longest_step * period;
+  return isnan(step) ? 0 : fmax(-most, fmin(step, most));
+}
+
+/** Moves a touch to the minimum of its gap that is nearest to its time, and sets the rest.
+ *  @returns RIC_ENUMERIC where there is none within a period; as ric_shooting_transfer */
+static ric_status touch_find(ric_shooting *s, const double *z, double given, double period, touch *k,
+                             ric_error *error) {
+  double before = INFINITY;
+  k->time = folded(k->time, period);
+  for (int i = 0; i < MOST_MINIMUM_STEPS; i++) {
+    RIC_TRY(ric_shooting_transfer(s, z, given, k->time, k->time, k->x, NULL, error));
+    RIC_TRY(read_gap(s->system, k, error));
+    const double step = step_of(k, period), size = fabs(step);
+    if (k->acceleration > 0 &&
+        (size <= minimum_tol * period || (size < sqrt(minimum_tol) * period && size > before / 2)))
+      return RIC_OK;
+    if (k->rate == 0)
+      break;
+    before = size;
+    k->time = folded(k->time + step, period);
+  }
+  return ric_fail(error, RIC_ENUMERIC, "the gap of obstacle %zu has no minimum near t = %g", k->obstacle, k->time);
+}
+
+/* Which grazing points the theory does not cover. Refusals are RIC_ENUMERIC and name the
+ * condition. */
+
+enum { SAMPLES = 129 };
+
+static const double largest_tol = 1e-2; /* that trajectories take */
+
+/* Times this near to each other, over the period, are one. */
+static const double same_time_tol = 1e-5;
+
+static double sample_range(const ric_system *s, size_t obstacle, double period, const double *q) {
+  double low = INFINITY, high = -INFINITY;
+  for (size_t k = 0; k < SAMPLES; k++) {
+    const double gap = ric_system_gap(s, obstacle, period * (double)k / (SAMPLES - 1), q + k * s->coordinates);
+    low = fmin(low, gap);
+    high = fmax(high, gap);
+  }
+  return high - low;
+}
+
+/** How much the gap of an obstacle changes along a motion: largest less smallest, of samples. */
+static ric_status degenerate_size(ric_shooting *s, const double *z, double given, size_t obstacle, double *size,
+                                  ric_error *error) {
+  const ric_system *system = s->system;
+  const double period = arcs_period(&s->arcs, z, given);
+  double *q = malloc(SAMPLES * s->arcs.size * sizeof *q);
+  if (!q)
+    return ric_fail(error, RIC_ENOMEM, "no memory for %d states of %zu numbers", SAMPLES, s->arcs.size);
+  const ric_status status = ric_shooting_states(s, z, given, SAMPLES, q, q + SAMPLES * system->coordinates, error);
+  if (status == RIC_OK)
+    *size = sample_range(system, obstacle, period, q);
+  free(q);
+  RIC_TRY(status);
+  if (*size > 0 && *size < INFINITY)
+    return RIC_OK;
+  return ric_fail(error, RIC_ENUMERIC, "the gap of obstacle %zu changes by %g along the motion: it is at rest",
+                  obstacle, *size);
+}
+
+/** A_g near zero. */
+static ric_status degenerate_acceleration(const touch *k, double period, double size, const ric_grazing_options *o,
+                                          ric_error *error) {
+  if (k->acceleration * period * period > o->degenerate * size)
+    return RIC_OK;
+  return ric_fail(error, RIC_ENUMERIC,
+                  "A_g near zero: the gap of obstacle %zu has the second derivative %.3g at t = %g", k->obstacle,
+                  k->acceleration, k->time);
+}
+
+/* What an event-driven run meets that is not the touch itself. */
+typedef struct meetings {
+  const ric_grazing *g;
+  double slowest; /* gap rates of transversal impacts are larger */
+  char found[160];
+} meetings;
+
+static bool is_touch(const ric_grazing *g, const ric_event *e) {
+  const double apart = fabs(remainder(e->time - g->time, g->period));
+  return e->obstacle == g->local.obstacle && apart <= same_time_tol * g->period;
+}
+
+static int see_contact(const ric_event *e, void *user) {
+  meetings *w = user;
+  if (is_touch(w->g, e))
+    return 0;
+  if (e->kind == RIC_EVENT_GRAZING)
+    snprintf(w->found, sizeof w->found, "two grazing points at once: obstacle %zu comes within %.3g at t = %g, too",
+             e->obstacle, e->depth, e->time);
+  else if (e->kind != RIC_EVENT_CONTACT && e->kind != RIC_EVENT_PARTING &&
+           !(e->kind == RIC_EVENT_TRANSVERSAL && -e->gap_rate > w->slowest))
+    snprintf(w->found, sizeof w->found, "an impact that is not transversal: %s, obstacle %zu, at t = %g",
+             ric_event_name(e->kind), e->obstacle, e->time);
+  return w->found[0] != 0;
+}
+
+static ric_status run(ric_trajectory *t, const ric_shooting *s, const double *x, double from, meetings *w,
+                      ric_error *error) {
+  const ric_observer observer = {.event = see_contact, .user = w};
+  ric_run run;
+  RIC_TRY(ric_trajectory_start(t, from, x, x + s->arcs.coordinates, error));
+  RIC_TRY(ric_trajectory_run(t, from + w->g->period * (1 - same_time_tol), &observer, &run, error));
+  if (run.outcome == RIC_RUN_COMPLETED || run.outcome == RIC_RUN_ENDED)
+    return RIC_OK;
+  return ric_fail(error, RIC_ENUMERIC, "%s at t = %g: %s", ric_run_outcome_name(run.outcome), run.time, run.reason);
+}
+
+/** Other grazing points, and impacts that are not transversal: by an event-driven run over a period. */
+static ric_status degenerate_motion(ric_family *f, const double *z, const ric_grazing *g, double size,
+                                    const ric_grazing_options *o, ric_error *error) {
+  ric_shooting *s = f->shooting;
+  meetings w = {.g = g, .slowest = o->transversal * size / g->period};
+  ric_trajectory_options options = ric_trajectory_options_default();
+  ric_trajectory *t = NULL;
+  options.flow = f->problem.motion.flow;
+  options.grazing_tol = fmin(o->touch_tol * size, largest_tol);
+  options.poll = s->poll;
+  double *x = malloc(g->numbers * sizeof *x);
+  const double from =
+      g->time + same_time_tol * g->period; /* just after the touch, which may be an impact by rounding */
+  ric_status status = x ? RIC_OK : ric_fail(error, RIC_ENOMEM, "no memory for %zu numbers", g->numbers);
+  if (status == RIC_OK)
+    status = ric_shooting_transfer(s, z, g->given, from, from, x, NULL, error);
+  if (status == RIC_OK)
+    status = ric_trajectory_create(s->system, &options, &t, error);
+  if (status == RIC_OK)
+    status = run(t, s, x, from, &w, error);
+  ric_trajectory_destroy(&t);
+  free(x);
+  RIC_TRY(status);
+  return w.found[0] ? ric_fail(error, RIC_ENUMERIC, "%s", w.found) : RIC_OK;
+}
+
+/* Grazing motions: found along a family, and made exact. */
 
 enum { MOST_STEPS = 12, MOST_SHORTER = 12 };
 
@@ -24,6 +203,13 @@ ric_grazing_options ric_grazing_options_default(void) {
   return (ric_grazing_options){.touch_tol = 1e-6, .degenerate = 1e-6, .transversal = 1e-6};
 }
 
+void ric_grazing_clear(ric_grazing *g) {
+  ric_grazing_local_clear(&g->local);
+  free(g->x);
+  free(g->z);
+  *g = (ric_grazing){0};
+}
+
 /* --- life --------------------------------------------------------------------------------------------------------- */
 
 ric_status ric_grazing_init(ric_grazing *g, const ric_shooting *s, ric_error *error) {
@@ -35,13 +221,6 @@ ric_status ric_grazing_init(ric_grazing *g, const ric_shooting *s, ric_error *er
     return RIC_OK;
   ric_grazing_clear(g);
   return ric_fail(error, RIC_ENOMEM, "no memory for a grazing motion of %zu numbers", numbers);
-}
-
-void ric_grazing_clear(ric_grazing *g) {
-  ric_grazing_local_clear(&g->local);
-  free(g->x);
-  free(g->z);
-  *g = (ric_grazing){0};
 }
 
 /* --- the minimum of the gap as a function of the parameter --- */
@@ -113,9 +292,11 @@ static ric_status refine(minimum *k, ric_grazing *g, ric_error *error) {
                   k->touch.obstacle, g->parameter);
 }
 
+/** Fills all that follows from the touch of a motion whose z, parameters and x, that of the touch, are there. The
+ * family has its parameters. @returns as ric_grazing_local_find */
 /* --- from a motion that nearly grazes --- */
 
-ric_status grazing_keep(const ric_family *f, const touch *at, double period, ric_grazing *g, ric_error *error) {
+static ric_status grazing_keep(const ric_family *f, const touch *at, double period, ric_grazing *g, ric_error *error) {
   g->given = f->given;
   g->period = period;
   g->time = at->time;
@@ -135,8 +316,8 @@ static ric_status fill(minimum *k, ric_grazing *g, const ric_grazing_options *o,
   return degenerate_motion(k->f, k->z, g, k->size, o, error);
 }
 
-static ric_status take(ric_family *f, double parameter, const touch *at, const ric_grazing_options *o, ric_grazing *g,
-                       ric_error *error) {
+static ric_status fill_grazing(ric_family *f, double parameter, const touch *at, const ric_grazing_options *o,
+                               ric_grazing *g, ric_error *error) {
   minimum k = {.f = f, .z = g->z, .touch = *at};
   g->parameter = parameter;
   g->second = f->problem.second;
@@ -153,7 +334,8 @@ static ric_status take(ric_family *f, double parameter, const touch *at, const r
   return status;
 }
 
-static ric_status check(const ric_family *f, const ric_grazing *g, const ric_grazing_options *o, ric_error *error) {
+static ric_status check_start(const ric_family *f, const ric_grazing *g, const ric_grazing_options *o,
+                              ric_error *error) {
   if (f->problem.motion.kind == RIC_MOTION_EVEN)
     return ric_fail(error, RIC_EINVAL, "motion.kind = even, expected forced, autonomous or conservative");
   if (g->numbers != f->shooting->arcs.size || g->unknowns != f->unknowns)
@@ -171,7 +353,7 @@ ric_status ric_grazing_take(ric_family *f, const double *z, double parameter, si
                             const ric_grazing_options *options, ric_grazing *g, ric_error *error) {
   const ric_grazing_options o = options ? *options : ric_grazing_options_default();
   const touch at = {.obstacle = obstacle, .time = time};
-  RIC_TRY(check(f, g, &o, error));
+  RIC_TRY(check_start(f, g, &o, error));
   if (obstacle >= f->problem.system->obstacle_count)
     return ric_fail(error, RIC_EINVAL, "obstacle = %zu, expected less than %zu", obstacle,
                     f->problem.system->obstacle_count);
@@ -180,7 +362,7 @@ ric_status ric_grazing_take(ric_family *f, const double *z, double parameter, si
   if (z != g->z)
     memcpy(g->z, z, g->unknowns * sizeof *z);
   family_forget(f);
-  return take(f, parameter, &at, &o, g, error);
+  return fill_grazing(f, parameter, &at, &o, g, error);
 }
 
 /* --- along a family ----------------------------------------------------------------------------------------------- */
@@ -192,7 +374,7 @@ typedef struct walk {
   bool found;
 } walk;
 
-static int see(const ric_family_point *point, void *user) {
+static int see_point(const ric_family_point *point, void *user) {
   walk *w = user;
   w->reached = point->parameter;
   if (point->kind != RIC_FAMILY_GRAZING)
@@ -209,10 +391,104 @@ ric_status ric_grazing_find(ric_family *f, double *z, double parameter, const ri
   const ric_grazing_options o = options ? *options : ric_grazing_options_default();
   walk w = {.g = g, .reached = parameter};
   ric_curve_run run;
-  RIC_TRY(check(f, g, &o, error));
-  RIC_TRY(ric_family_follow(f, z, parameter, NULL, see, &w, &run, error));
+  RIC_TRY(check_start(f, g, &o, error));
+  RIC_TRY(ric_family_follow(f, z, parameter, NULL, see_point, &w, &run, error));
   if (w.found)
-    return take(f, w.parameter, &w.at, &o, g, error);
+    return fill_grazing(f, w.parameter, &w.at, &o, g, error);
   return ric_fail(error, RIC_ENUMERIC, "no obstacle is touched from %.9g to %.9g, where the family ends: %s%s%.100s",
                   parameter, w.reached, ric_curve_end_name(run.end), run.reason[0] ? ": " : "", run.reason);
+}
+
+/* Curves of grazing in two parameters, with the criterion along them. */
+
+typedef struct tracer {
+  ric_family *f;
+  ric_grazing grazing; /* of the point looked at last */
+  ric_grazing_map map;
+  ric_grazing_criterion criterion;
+  double coefficients[RIC_GRAZING_CURVE_COEFFICIENTS];
+  size_t count;
+  double *rates; /* [n + m] */
+  int (*seen)(const ric_grazing_curve_point *point, void *user);
+  void *user;
+  ric_status status; /* of a look that failed in the callback */
+  ric_error *error;
+} tracer;
+
+static ric_status find_criterion(tracer *t, const ric_family_curve_point *p, ric_error *error) {
+  ric_family *f = t->f;
+  ric_grazing *g = &t->grazing;
+  const size_t obstacle = g->local.obstacle;
+  const shooting_gaps *gaps = f->shooting->gaps; /* of the point's orbit: where the gap is zero on the curve */
+  const gap_found *least = gaps->hit[obstacle] ? &gaps->own : &gaps->free;
+  touch at = {.obstacle = obstacle, .time = least->time, .x = g->x, .rates = t->rates};
+  if (least->obstacle != obstacle)
+    return ric_fail(error, RIC_ENUMERIC, "obstacle %zu is touched where obstacle %zu was", least->obstacle, obstacle);
+  memcpy(g->z, p->z, g->unknowns * sizeof *g->z);
+  g->parameter = p->parameter;
+  g->second = p->second;
+  RIC_TRY(touch_find(f->shooting, g->z, p->given, p->orbit->period, &at, error));
+  RIC_TRY(grazing_keep(f, &at, p->orbit->period, g, error));
+  const ric_grazing_plane plane = {.time = g->time};
+  section here;
+  const ric_status status = section_open(&here, f, g, &plane, &t->map, error);
+  section_close(&here);
+  RIC_TRY(status);
+  return ric_grazing_criterion_find(&t->map, NULL, &t->criterion, t->coefficients, t->count, NULL, error);
+}
+
+static ric_status tests(const ric_family_curve_point *point, double *values, void *user, ric_error *error) {
+  tracer *t = user;
+  RIC_TRY(find_criterion(t, point, error));
+  memcpy(values, t->coefficients, t->count * sizeof *values);
+  return RIC_OK;
+}
+
+static int show(const ric_family_curve_point *p, void *user) {
+  tracer *t = user;
+  t->status = find_criterion(t, p, t->error);
+  if (t->status != RIC_OK)
+    return 1;
+  const ric_grazing_curve_point point = {.grazing = &t->grazing,
+                                         .criterion = &t->criterion,
+                                         .coefficients = t->coefficients,
+                                         .count = t->count,
+                                         .zero = p->zero};
+  return t->seen ? t->seen(&point, t->user) : 0;
+}
+
+static ric_status begin_curve(tracer *t, const ric_grazing *from, ric_error *error) {
+  RIC_TRY(ric_grazing_init(&t->grazing, t->f->shooting, error));
+  t->grazing.time = from->time;
+  t->grazing.local.obstacle = from->local.obstacle;
+  RIC_TRY(ric_grazing_map_init(&t->map, ric_grazing_coordinates(from, t->f->shooting), error));
+  t->rates = malloc(from->numbers * sizeof *t->rates);
+  return t->rates ? RIC_OK : ric_fail(error, RIC_ENOMEM, "no memory for %zu rates", from->numbers);
+}
+
+ric_status ric_grazing_trace(ric_family *f, const ric_grazing *from, const ric_curve_options *options, size_t count,
+                             int (*seen)(const ric_grazing_curve_point *point, void *user), void *user,
+                             ric_curve_run *run, ric_error *error) {
+  ric_error own;
+  tracer t = {.f = f, .count = count, .seen = seen, .user = user, .error = error ? error : &own};
+  const ric_family_point point = {.kind = RIC_FAMILY_GRAZING,
+                                  .parameter = from->parameter,
+                                  .unknowns = from->unknowns,
+                                  .z = from->z,
+                                  .given = from->given,
+                                  .obstacle = from->local.obstacle,
+                                  .time = from->time};
+  const ric_family_curve_tests along = {count, tests, &t};
+  if (count > RIC_GRAZING_CURVE_COEFFICIENTS)
+    return ric_fail(error, RIC_EINVAL, "count = %zu, expected at most %d coefficients", count,
+                    RIC_GRAZING_CURVE_COEFFICIENTS);
+  ric_status status = begin_curve(&t, from, t.error);
+  if (status == RIC_OK)
+    status = ric_family_trace(f, &point, options, &along, show, &t, run, t.error);
+  if (status == RIC_OK)
+    status = t.status;
+  ric_grazing_clear(&t.grazing);
+  ric_grazing_map_clear(&t.map);
+  free(t.rates);
+  return status;
 }

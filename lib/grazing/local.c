@@ -1,9 +1,12 @@
 /* The coefficients of grazing at a state. */
 #include "local.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+#include "numeric/largest.h"
 
 /* An impact that leaves this part of the gap rate, and more, coming in is none. */
 static const double turn_tol = 1e-6;

@@ -1,6 +1,8 @@
 /* What every function of grazing asks of an obstacle: internal to the room. */
-#ifndef RICOCHET_GRAZING_LOCAL_H
-#define RICOCHET_GRAZING_LOCAL_H
+#ifndef RICOCHET_LOCAL_H
+#define RICOCHET_LOCAL_H
+
+#include <stdbool.h>
 
 #include "model/system_model.h"
 #include "ricochet/bypass.h"

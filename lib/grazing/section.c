@@ -1,3 +1,306 @@
+/* The coefficients of the return map on a section, to first and second order. */
+#include "section.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "numeric/constants.h"
+#include "numeric/number_block.h"
+
+/* kappa on a section.
+ *
+ * Behind grazing by y^2, at x* - y^2 n with eta n = 1, the bypass map and the motion from the touch to the section add
+ * to what the motion would do without them
+ *
+ *   s y xi' + y^2 kappa' + O(y^3):
+ *
+ * kappa of the bypass map, and what the motion after it makes of the square of s y xi, where it is nonlinear, where
+ * impacts follow and where the section is crossed at another time. All of it is in the motion itself; kappa' is its
+ * limit for vanishing y. Any n will do: its choice is of the order of y |x - x*|. */
+
+enum { TRIALS = 7, MOST_APPROACHES = 4, MOST_CROSSINGS = 20 };
+
+/* The largest y, over the root of A_g (T / 2 pi)^2, a size of the gap's changes; halved for extrapolation. */
+static const double largest_y = 0.05;
+
+/* Steps onto the section below this part of the period are rounding when they no longer shrink. */
+static const double crossing_tol = 1e-11;
+
+/* A motion whose crossing is farther off than this part of the period has missed the section. */
+static const double farthest = 0.25;
+
+typedef struct second {
+  const section *k;
+  const ric_grazing_map *map;
+  ric_bypass *bypass;
+  ric_trajectory *trajectory; /* NULL: the motion has no impacts */
+  double *x, *home;           /* [numbers] a state; the motion on the section */
+  double *difference;         /* [state] */
+  double *normal;             /* [numbers] n */
+  double *smooth;             /* [size] what -n y^2 becomes without impacts, over y^2 */
+  double *rows, *rate;        /* [TRIALS][size] of Neville's scheme; [numbers] */
+  double *best;               /* [size] kappa so far */
+  size_t next, expected;      /* impact of the motion that the next one is to be; how many more there are to be */
+  double *block;
+} second;
+
+static ric_status open(second *w, ric_error *error) {
+  const section *k = w->k;
+  const size_t n = k->numbers, size = k->size;
+  ric_system *system = k->f->problem.system;
+  const ric_flow_options flow = k->f->problem.motion.flow;
+  ric_trajectory_options motion = ric_trajectory_options_default();
+  ric_bypass_options bypass = ric_bypass_options_default();
+  size_t used = 0;
+  double *block = w->block = calloc(4 * n + k->state + (2 + TRIALS) * size, sizeof *block);
+  if (!block)
+    return ric_fail(error, RIC_ENOMEM, "no memory for motions of %zu numbers", n);
+  w->x = number_block_take(block, &used, n);
+  w->home = number_block_take(block, &used, n);
+  w->normal = number_block_take(block, &used, n);
+  w->rate = number_block_take(block, &used, n);
+  w->difference = number_block_take(block, &used, k->state);
+  w->smooth = number_block_take(block, &used, size);
+  w->rows = number_block_take(block, &used, TRIALS * size);
+  w->best = number_block_take(block, &used, size);
+  motion.flow = bypass.flow = flow;
+  motion.poll = k->f->problem.motion.poll;
+  bypass.reach = k->g->period / 4;
+  RIC_TRY(ric_bypass_create(system, k->g->local.obstacle, &bypass, &w->bypass, error));
+  return k->f->impacts > 0 ? ric_trajectory_create(system, &motion, &w->trajectory, error) : RIC_OK;
+}
+
+static void close(second *w) {
+  ric_bypass_destroy(&w->bypass);
+  ric_trajectory_destroy(&w->trajectory);
+  free(w->block);
+}
+
+static double dot(const double *a, const double *b, size_t count) {
+  double sum = 0;
+  for (size_t i = 0; i < count; i++)
+    sum += a[i] * b[i];
+  return sum;
+}
+
+/** Coordinates [size] of what is left of a difference [state] of the motion a period later when it is moved along the
+ *  flow onto the section. */
+/* Coordinates of what is left of a vector [state] when it is moved along the flow onto the section. */
+static void section_project(const section *k, const double *vector, double *z) {
+  const double along = dot(k->normal, vector, k->state) / dot(k->normal, k->rates, k->state);
+  for (size_t j = 0; j < k->size; j++) {
+    const double *row = k->basis + j * k->state;
+    z[j] = dot(row, vector, k->state) - along * dot(row, k->rates, k->state);
+  }
+}
+
+/* Sets `home`, n, and where -n goes. */
+static ric_status begin(second *w, ric_error *error) {
+  const section *k = w->k;
+  const ric_grazing *g = k->g;
+  const size_t n = k->numbers;
+  double square = 0;
+  RIC_TRY(ric_shooting_transfer(k->f->shooting, g->z, g->given, k->time, k->time, w->home, NULL, error));
+  for (size_t i = 0; i < n; i++)
+    square += g->local.eta[i] * g->local.eta[i];
+  for (size_t i = 0; i < n; i++)
+    w->normal[i] = g->local.eta[i] / square;
+  memset(w->difference, 0, k->state * sizeof *w->difference);
+  for (size_t i = 0; i < n; i++)
+    for (size_t j = 0; j < n; j++)
+      w->difference[i] -= k->matrix[i * n + j] * w->normal[j];
+  section_project(k, w->difference, w->smooth);
+  return RIC_OK;
+}
+
+/* --- onto the section --- */
+
+/* How far the state w->x at a time is from the motion on the section a period later, and the time in which the flow
+ * would bring it onto the section, to first order. */
+static ric_status measure_return(second *w, double t, double *ahead, ric_error *error) {
+  const section *k = w->k;
+  const size_t n = k->f->problem.system->coordinates;
+  double distance = 0, speed = 0;
+  RIC_TRY(ric_system_rate(k->f->problem.system, t, w->x, w->x + n, w->rate, w->rate + n, error));
+  for (size_t i = 0; i < k->numbers; i++) {
+    w->difference[i] = w->x[i] - w->home[i];
+    distance += k->normal[i] * w->difference[i];
+    speed += k->normal[i] * w->rate[i];
+  }
+  if (k->forced) {
+    w->difference[k->numbers] = t - (k->time + k->g->period);
+    distance += k->normal[k->numbers] * w->difference[k->numbers];
+    speed += k->normal[k->numbers];
+  }
+  *ahead = -distance / speed;
+  return RIC_OK;
+}
+
+/* As if there were no obstacles, forwards or back. */
+static ric_status flow_to(second *w, double t, double end, ric_error *error) {
+  return arc_runner_move(&w->k->f->shooting->runner, t, end, w->x, 0, NULL, NULL, error);
+}
+
+/* Moves the state onto the section; its difference from the motion is set then. */
+static ric_status cross(second *w, double t, ric_error *error) {
+  double ahead, before = INFINITY;
+  for (int i = 0; i < MOST_CROSSINGS; i++) {
+    RIC_TRY(measure_return(w, t, &ahead, error));
+    const double size = fabs(ahead);
+    if (t + ahead == t || (size <= crossing_tol * w->k->g->period && size > before / 2))
+      return RIC_OK;
+    if (!(size <= farthest * w->k->g->period))
+      break;
+    RIC_TRY(flow_to(w, t, t + ahead, error));
+    t += ahead;
+    before = size;
+  }
+  return ric_fail(error, RIC_ENUMERIC, "the section is not met near t = %g", t);
+}
+
+/* --- the limit --- */
+
+/* When the motion next has one of its impacts after the touch, since then. */
+static double time_to(const section *k, size_t which) {
+  const double period = k->g->period;
+  const double time = fmod(arcs_time(k->f->shooting->arcs.impacts[which], k->g->z, period) - k->touch, period);
+  return time < 0 ? time + period : time;
+}
+
+/* Of the impacts of the motion until the section, how many there are; the first one after the touch. */
+static size_t expect(const section *k, double duration, size_t *first) {
+  size_t count = 0;
+  *first = 0;
+  for (size_t i = 0; i < k->f->shooting->arcs.sequence_count; i++) {
+    count += time_to(k, i) <= duration;
+    if (time_to(k, i) < time_to(k, *first))
+      *first = i;
+  }
+  return count;
+}
+
+/* Ends a run after the last impact that is expected, and at one that is not. */
+static int meet(const ric_event *e, void *user) {
+  second *w = user;
+  const arc_plan *arcs = &w->k->f->shooting->arcs;
+  if (!ric_event_jumps(e))
+    return 0;
+  if (e->obstacle != arcs->sequence[w->next])
+    return 1;
+  w->next = (w->next + 1) % arcs->sequence_count;
+  return --w->expected == 0;
+}
+
+/* From the touch through the impacts that the motion has before the section; `time` is that of the last one. It may be
+ * later than the motion is on the section. */
+static ric_status meet_impacts(second *w, double end, double *time, ric_error *error) {
+  const size_t n = w->k->f->problem.system->coordinates;
+  const ric_observer observer = {.event = meet, .user = w};
+  ric_run run;
+  RIC_TRY(ric_trajectory_start(w->trajectory, *time, w->x, w->x + n, error));
+  RIC_TRY(ric_trajectory_run(w->trajectory, end + farthest * w->k->g->period, &observer, &run, error));
+  if (run.outcome != RIC_RUN_ENDED && run.outcome != RIC_RUN_COMPLETED)
+    return ric_fail(error, RIC_ENUMERIC, "beside the grazing motion: %s at t = %g: %s",
+                    ric_run_outcome_name(run.outcome), run.time, run.reason);
+  if (w->expected > 0)
+    return ric_fail(error, RIC_ENUMERIC, "beside the grazing motion there are other impacts than its own until t = %g",
+                    run.time);
+  memcpy(w->x, ric_trajectory_q(w->trajectory), n * sizeof *w->x);
+  if (w->k->numbers > n)
+    memcpy(w->x + n, ric_trajectory_u(w->trajectory), (w->k->numbers - n) * sizeof *w->x);
+  *time = run.time;
+  return RIC_OK;
+}
+
+/* From the touch onto the section. What comes after the last impact is smooth when no obstacle is in the way: the touch
+ * of the next period, and impacts just behind the section, are not met early. */
+static ric_status run_on(second *w, ric_error *error) {
+  const section *k = w->k;
+  const double end = k->time + k->g->period;
+  double time = k->touch;
+  w->expected = expect(k, end - k->touch, &w->next);
+  if (w->expected > 0)
+    RIC_TRY(meet_impacts(w, end, &time, error));
+  RIC_TRY(flow_to(w, time, end, error));
+  return cross(w, end, error);
+}
+
+/* (s y xi + y^2 kappa + ... - s y xi) / y^2 into a row [size]. y is that of the minimum of the gap that the bypass map
+ * has found: at the grazing motion itself the gap is zero to rounding only. */
+static ric_status try(second *w, double depth, double *row, ric_error *error) {
+  const section *k = w->k;
+  ric_bypass_seen seen;
+  for (size_t i = 0; i < k->numbers; i++)
+    w->x[i] = k->g->x[i] - depth * w->normal[i];
+  RIC_TRY(ric_bypass_map(w->bypass, k->touch, w->x, w->x, &seen, error));
+  if (!(seen.psi < 0))
+    return ric_fail(error, RIC_ENUMERIC, "the gap is %.3g at a state %.3g behind grazing, expected less than zero",
+                    seen.psi, depth);
+  RIC_TRY(run_on(w, error));
+  const double y = sqrt(-seen.psi);
+  for (size_t j = 0; j < k->size; j++) {
+    double along = -depth * w->smooth[j];
+    for (size_t i = 0; i < k->state; i++)
+      along += k->basis[j * k->state + i] * w->difference[i];
+    row[j] = (along / y - w->map->stretch * w->map->xi[j]) / y;
+  }
+  return RIC_OK;
+}
+
+/* The next order of Neville's scheme, in place from the last row. Of all entries the best one is that which changes
+ * least from the coarser one of the two that it is made of: beyond it rounding takes over. */
+static void raise_order(second *w, int order, double *error) {
+  const size_t size = w->k->size;
+  for (size_t i = TRIALS - 1; i >= (size_t)order; i--) {
+    double *fine = w->rows + i * size, most = 0;
+    const double *coarse = fine - size;
+    for (size_t j = 0; j < size; j++) {
+      const double change = (fine[j] - coarse[j]) / (ldexp(1, order) - 1);
+      most = fmax(most, fabs(fine[j] + change - coarse[j]));
+      fine[j] += change;
+    }
+    if (most < *error) {
+      *error = most;
+      memcpy(w->best, fine, size * sizeof *fine);
+    }
+  }
+}
+
+/* From a largest y. */
+static ric_status extrapolate(second *w, double most, double *kappa, ric_error *error) {
+  double change = INFINITY;
+  for (int i = 0; i < TRIALS; i++)
+    RIC_TRY(try(w, ldexp(most * most, -2 * i), w->rows + (size_t)i * w->k->size, error));
+  for (int order = 1; order < TRIALS; order++)
+    raise_order(w, order, &change);
+  if (!(change < INFINITY))
+    return ric_fail(error, RIC_ENUMERIC, "motions beside the grazing one do not come back as numbers");
+  memcpy(kappa, w->best, w->k->size * sizeof *kappa);
+  return RIC_OK;
+}
+
+/* Motions that start too far from grazing may miss the section, or meet the obstacle again: then from nearer. */
+static ric_status approach(second *w, double *kappa, ric_error *error) {
+  double most = largest_y * sqrt(w->k->g->local.acceleration) * w->k->g->period / two_pi;
+  ric_status status = extrapolate(w, most, kappa, error);
+  for (int i = 0; status == RIC_ENUMERIC && i < MOST_APPROACHES; i++)
+    status = extrapolate(w, most /= 4, kappa, error);
+  return status;
+}
+
+/** The map's kappa; `matrix` still is the derivative from the touch to the section. */
+static ric_status section_second(const section *k, ric_grazing_map *map, ric_error *error) {
+  second w = {.k = k, .map = map};
+  ric_status status = open(&w, error);
+  if (status == RIC_OK)
+    status = begin(&w, error);
+  if (status == RIC_OK)
+    status = approach(&w, map->kappa, error);
+  close(&w);
+  return status;
+}
+
 /* The coefficients of the return map on a section.
  *
  * Small differences (dx, dt) of a state and its time go along the motion as dx - F dt at one time: from time a to b,
@@ -6,12 +309,6 @@
  *   (dx, dt) -> (Y (dx - F(a) dt) + F(b) dt, dt).
  *
  * Without forcing dt is left out. */
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include "model/number_block.h"
-#include "section.h"
 
 /* Flows that cross a section at an angle below it do not cross it. */
 static const double least_angle = 1e-8;
@@ -27,7 +324,7 @@ size_t ric_grazing_coordinates(const ric_grazing *g, const ric_shooting *s) {
   return s->arcs.kind == RIC_MOTION_FORCED ? g->numbers : g->numbers - 1;
 }
 
-static ric_status allocate(section *k, ric_error *error) {
+static ric_status allocate_section(section *k, ric_error *error) {
   const size_t n = k->numbers, s = k->state;
   size_t used = 0;
   double *block = k->block = calloc(n * n + n + (4 + k->size) * s, sizeof *block);
@@ -41,13 +338,6 @@ static ric_status allocate(section *k, ric_error *error) {
   k->goes = number_block_take(block, &used, s);
   k->basis = number_block_take(block, &used, k->size * s);
   return RIC_OK;
-}
-
-static double dot(const double *a, const double *b, size_t count) {
-  double sum = 0;
-  for (size_t i = 0; i < count; i++)
-    sum += a[i] * b[i];
-  return sum;
 }
 
 /* --- the section --- */
@@ -101,15 +391,6 @@ static void set_basis(section *k) {
       const double vi = k->normal[i] + (i == last ? sign : 0), vj = k->normal[j];
       k->basis[j * k->state + i] = (i == j ? 1 : 0) - vi * vj / (1 + sign * k->normal[last]);
     }
-}
-
-/* Coordinates of what is left of a vector [state] when it is moved along the flow onto the section. */
-void section_project(const section *k, const double *vector, double *z) {
-  const double along = dot(k->normal, vector, k->state) / dot(k->normal, k->rates, k->state);
-  for (size_t j = 0; j < k->size; j++) {
-    const double *row = k->basis + j * k->state;
-    z[j] = dot(row, vector, k->state) - along * dot(row, k->rates, k->state);
-  }
 }
 
 /* --- the coefficients --- */
@@ -188,7 +469,7 @@ static bool is_at_impact(const section *k, double time) {
   return false;
 }
 
-static ric_status check(const section *k, const ric_grazing_map *map, ric_error *error) {
+static ric_status check_map(const section *k, const ric_grazing_map *map, ric_error *error) {
   if (k->f->problem.motion.kind == RIC_MOTION_EVEN)
     return ric_fail(error, RIC_EINVAL, "motion.kind = even, expected forced, autonomous or conservative");
   if (map->size != k->size)
@@ -208,10 +489,10 @@ ric_status section_open(section *k, ric_family *f, const ric_grazing *g, const r
   k->state = g->numbers + (k->forced ? 1 : 0);
   k->size = k->state - 1;
   k->touch = g->time >= k->time ? g->time : g->time + g->period; /* on the way from the section */
-  RIC_TRY(check(k, map, error));
+  RIC_TRY(check_map(k, map, error));
   family_forget(f);
   RIC_TRY(family_set(f, g->parameter, g->second, error));
-  RIC_TRY(allocate(k, error));
+  RIC_TRY(allocate_section(k, error));
   RIC_TRY(read_rates(k, error));
   RIC_TRY(set_normal(k, plane ? plane->normal : NULL, error));
   set_basis(k);

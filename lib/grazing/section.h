@@ -2,7 +2,8 @@
 #ifndef RICOCHET_SECTION_H
 #define RICOCHET_SECTION_H
 
-#include "grazing_parts.h"
+#include "family/family.h"
+#include "ricochet/grazing.h"
 
 typedef struct section {
   const ric_grazing *g;
@@ -23,12 +24,5 @@ typedef struct section {
 ric_status section_open(section *section, ric_family *family, const ric_grazing *grazing,
                         const ric_grazing_plane *plane, ric_grazing_map *map, ric_error *error);
 void section_close(section *section);
-
-/** Coordinates [size] of what is left of a difference [state] of the motion a period later when it is moved along the
- *  flow onto the section. */
-void section_project(const section *section, const double *difference, double *z);
-
-/** The map's kappa; `matrix` still is the derivative from the touch to the section. */
-ric_status section_second(const section *section, ric_grazing_map *map, ric_error *error);
 
 #endif

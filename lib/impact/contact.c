@@ -1,16 +1,20 @@
+/* The state of a contact and how it changes: impacts that accumulate (chatter), rest (sticking) and release. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "numeric/largest.h"
+#include "numeric/list.h"
+#include "trajectory.h"
+
 /* The life of a contact: the one place that changes its state.
  *
  * A contact is open, pressed or held (kept by the flow, which its forces depend on), or passed for good: such a one has
  * no events and is on no list. An open or pressed one departs from zero, fast or slowly, until it is clear of it; a
  * held one comes to rest, where a series of impacts was summed up, or rests. Lists name those that are held, that
  * depart, and that come to rest, so that no step looks at all contacts. */
-#include <string.h>
-
-#include "growing.h"
-#include "trajectory_state.h"
 
 ric_status index_list_add(index_list *list, size_t item, ric_error *error) {
-  size_t *items = growing_room(list->items, list->count, &list->capacity, sizeof *items);
+  size_t *items = list_room(list->items, list->count, &list->capacity, sizeof *items);
   if (!items)
     return ric_fail(error, RIC_ENOMEM, "no memory for a list of more than %zu contacts", list->count);
   list->items = items;
@@ -75,7 +79,7 @@ ric_status contact_rests(ric_trajectory *tr, size_t obstacle, ric_error *error) 
 }
 
 ric_status contact_will_rest(ric_trajectory *tr, size_t obstacle, double time, ric_error *error) {
-  coming_rest *coming = growing_room(tr->coming, tr->coming_count, &tr->coming_capacity, sizeof *coming);
+  coming_rest *coming = list_room(tr->coming, tr->coming_count, &tr->coming_capacity, sizeof *coming);
   if (!coming)
     return ric_fail(error, RIC_ENOMEM, "no memory for more than %zu contacts that come to rest", tr->coming_count);
   tr->coming = coming;
@@ -132,4 +136,278 @@ void contacts_forget_released(ric_trajectory *tr) {
     if (contact_persists(tr, tr->held.items[i]))
       tr->held.items[kept++] = tr->held.items[i];
   tr->held.count = kept;
+}
+
+/* Contacts with gap and gap rate zero: which persist, which open, and how impacts accumulate towards rest. */
+
+static ric_status blame(const ric_trajectory *tr, size_t obstacle, const char *trouble, ric_error *error) {
+  return ric_fail(error, RIC_ECALLBACK, "at t = %g, obstacle %zu: %s", tr->flow->time, obstacle, trouble);
+}
+
+void contacts_measure(ric_trajectory *tr) {
+  size_t n = tr->system->coordinates, m = tr->system->speeds;
+  double place = largest(tr->flow->q, n);
+  tr->locator.noise = tr->noise * (1 + place);
+  tr->rate_noise = tr->noise * (1 + (m ? largest(tr->flow->u, m) : place));
+}
+
+/* Rates of the present state into tr->rates. */
+static ric_status find_rates(ric_trajectory *tr, double t, const double *q, const double *u, ric_error *error) {
+  const ric_system *s = tr->system;
+  const char *trouble = s->model->rate(s, tr->flow->contact, t, q, u, tr->rates, tr->rates + s->coordinates);
+  return trouble ? ric_fail(error, RIC_ECALLBACK, "at t = %g: %s", t, trouble) : RIC_OK;
+}
+
+static ric_status read_acceleration(ric_trajectory *tr, double t, const double *q, const double *u, size_t obstacle,
+                                    double *acceleration, ric_error *error) {
+  const ric_system *s = tr->system;
+  const char *trouble =
+      s->model->gap_acceleration(s, obstacle, t, q, u, tr->rates, tr->rates + s->coordinates, acceleration);
+  return trouble ? blame(tr, obstacle, trouble, error) : RIC_OK;
+}
+
+ric_status gap_acceleration(ric_trajectory *tr, size_t obstacle, double *acceleration, ric_error *error) {
+  ric_flow *f = tr->flow;
+  contact_state now = flow_contact(f, obstacle);
+  if (now == CONTACT_HELD)
+    flow_set_contact(f, obstacle, CONTACT_OPEN);
+  ric_status status = find_rates(tr, f->time, f->q, f->u, error);
+  flow_set_contact(f, obstacle, now);
+  RIC_TRY(status);
+  return read_acceleration(tr, f->time, f->q, f->u, obstacle, acceleration, error);
+}
+
+/* Rates of the state moved along its present rates for a short time. */
+static ric_status find_rates_after(ric_trajectory *tr, double dt, ric_error *error) {
+  const ric_flow *f = tr->flow;
+  size_t n = tr->system->coordinates, m = tr->system->speeds;
+  double *q = tr->shifted, *u = tr->shifted + n;
+  RIC_TRY(find_rates(tr, f->time, f->q, f->u, error));
+  for (size_t i = 0; i < n; i++)
+    q[i] = f->q[i] + dt * tr->rates[i];
+  for (size_t i = 0; i < m; i++)
+    u[i] = f->u[i] + dt * tr->rates[n + i];
+  return find_rates(tr, f->time + dt, q, u, error);
+}
+
+/* Adds scale times the acceleration there of every gap that is still a candidate to its `accumulation`. */
+static ric_status add_jerks(ric_trajectory *tr, double dt, double scale, ric_error *error) {
+  size_t n = tr->system->coordinates;
+  RIC_TRY(find_rates_after(tr, dt, error));
+  for (size_t i = 0; i < tr->impact_count; i++) {
+    double acceleration;
+    if (isnan(tr->impacts[i].accumulation))
+      continue;
+    RIC_TRY(read_acceleration(tr, tr->flow->time + dt, tr->shifted, tr->shifted + n, tr->impacts[i].obstacle,
+                              &acceleration, error));
+    tr->impacts[i].accumulation += scale * acceleration;
+  }
+  return RIC_OK;
+}
+
+/* A hit among persistent contacts, or hits that do not couple. */
+static bool may_chatter(const ric_trajectory *tr, const impact *c, size_t hits) {
+  bool alone = hits == 1 || (!c->coupled && tr->system->model->direction);
+  return alone && c->rate < -tr->rate_noise && c->rate_end > tr->rate_noise && tr->options.chatter_tol > 0 &&
+         c->restitution < 1;
+}
+
+/* Time that a series lasts under the present acceleration. */
+static double first_duration(const impact *c, double acceleration) {
+  double e = c->restitution;
+  return acceleration < 0 ? 2 * c->rate_end / (-acceleration * (1 - e)) : INFINITY;
+}
+
+/* Duration below which a series is summed up. An error of the flow's tolerance in the gap makes one of tolerance / w in
+ * the time of landing, w growing with the duration, and summing up costs its third power: so the two meet at the fourth
+ * root of the tolerance, and to follow a series any further only costs digits. */
+static double chatter_limit(const ric_trajectory *tr) {
+  double size = tr->locator.noise / tr->noise;
+  return fmax(tr->options.chatter_tol, pow(tr->flow->options.tolerance * size, 0.25));
+}
+
+/* Whether a bounce loses no more of its height than the flow's errors can give back: followed, they would keep the
+ * series up. */
+static bool is_kept_up(const ric_trajectory *tr, const impact *c, double acceleration) {
+  double e = c->restitution, size = tr->locator.noise / tr->noise;
+  double error = 10 * tr->flow->options.tolerance * size;
+  return acceleration < 0 && (1 - e * e) * c->rate_end * c->rate_end <= -2 * acceleration * error;
+}
+
+/* Flights of a gap with acceleration -A + J t that begin at the rate w and shrink by e last, in all and to the order
+ * after the first, 2 w / (A (1 - e)) (1 + (2/3) (J / A^2) w / (1 - e)). */
+static double judge_series(const ric_trajectory *tr, const impact *c, double acceleration, double jerk) {
+  double e = c->restitution, duration = first_duration(c, acceleration);
+  double limit = is_kept_up(tr, c, acceleration) ? 1 : chatter_limit(tr);
+  if (!(duration * fmax(1, fabs(jerk / acceleration)) <= limit))
+    return NAN;
+  return duration * (1 + 2 * jerk * c->rate_end / (3 * acceleration * acceleration * (1 - e)));
+}
+
+/* Those whose series is short under the present acceleration; `accumulation` is 0 for them, ready for the jerk. */
+static ric_status find_candidates(ric_trajectory *tr, size_t hits, bool *any, ric_error *error) {
+  const ric_flow *f = tr->flow;
+  bool asked = false;
+  *any = false;
+  for (size_t i = 0; i < tr->impact_count; i++) {
+    impact *c = &tr->impacts[i];
+    double acceleration;
+    c->accumulation = NAN;
+    if (i >= hits || !may_chatter(tr, c, hits))
+      continue;
+    if (!asked)
+      RIC_TRY(find_rates(tr, f->time, f->q, f->u, error));
+    asked = true;
+    RIC_TRY(read_acceleration(tr, f->time, f->q, f->u, c->obstacle, &acceleration, error));
+    if (first_duration(c, acceleration) <= chatter_limit(tr) || is_kept_up(tr, c, acceleration))
+      c->accumulation = 0;
+    *any |= !isnan(c->accumulation);
+  }
+  return RIC_OK;
+}
+
+/* Held contacts that the impulse has lifted bear no force in the time ahead. */
+static void open_lifted(ric_trajectory *tr, size_t hits) {
+  for (size_t i = hits; i < tr->impact_count; i++)
+    if (tr->impacts[i].rate_end > tr->rate_noise)
+      flow_set_contact(tr->flow, tr->impacts[i].obstacle, CONTACT_OPEN);
+}
+
+ric_status chatter_ahead(ric_trajectory *tr, size_t hits, ric_error *error) {
+  const ric_flow *f = tr->flow;
+  double dt = 1e-5;
+  bool any;
+  open_lifted(tr, hits);
+  RIC_TRY(find_candidates(tr, hits, &any, error));
+  if (!any)
+    return RIC_OK;
+  RIC_TRY(add_jerks(tr, dt, 1 / (2 * dt), error));
+  RIC_TRY(add_jerks(tr, -dt, -1 / (2 * dt), error));
+  RIC_TRY(find_rates(tr, f->time, f->q, f->u, error));
+  for (size_t i = 0; i < tr->impact_count; i++) {
+    impact *c = &tr->impacts[i];
+    double acceleration;
+    if (isnan(c->accumulation))
+      continue;
+    RIC_TRY(read_acceleration(tr, f->time, f->q, f->u, c->obstacle, &acceleration, error));
+    c->accumulation = judge_series(tr, c, acceleration, c->accumulation);
+  }
+  return RIC_OK;
+}
+
+static ric_status make_room(ric_trajectory *tr, ric_error *error) {
+  size_t count = tr->settling.count;
+  if (count <= tr->settling_capacity)
+    return RIC_OK;
+  free(tr->accelerations);
+  free(tr->forces);
+  tr->accelerations = malloc(count * sizeof *tr->accelerations);
+  tr->forces = malloc(count * sizeof *tr->forces);
+  tr->settling_capacity = tr->accelerations && tr->forces ? count : 0;
+  return tr->settling_capacity ? RIC_OK : ric_fail(error, RIC_ENOMEM, "no memory for %zu persistent contacts", count);
+}
+
+/* Moves the coordinates by their rates at speeds that close the gaps in a unit of time: q' is linear in the speeds. */
+static ric_status close_gaps(ric_trajectory *tr, const size_t *obstacles, size_t count, ric_error *error) {
+  ric_flow *f = tr->flow;
+  size_t n = tr->system->coordinates, m = tr->system->speeds;
+  double *u = tr->shifted + n;
+  RIC_TRY(find_rates(tr, f->time, f->q, f->u, error));
+  memcpy(tr->shifted, tr->rates, n * sizeof *tr->rates);
+  memcpy(u, f->u, m * sizeof *u);
+  RIC_TRY(impact_close_in(&tr->law, f->time, f->q, u, obstacles, count, error));
+  RIC_TRY(find_rates(tr, f->time, f->q, u, error));
+  for (size_t i = 0; i < n; i++)
+    f->q[i] += tr->rates[i] - tr->shifted[i];
+  return RIC_OK;
+}
+
+ric_status contacts_put_on(ric_trajectory *tr, const size_t *obstacles, size_t count, ric_error *error) {
+  const ric_obstacle *o = tr->system->obstacles;
+  for (size_t i = 0; o && i < count; i++)
+    tr->flow->q[o[obstacles[i]].coordinate] = o[obstacles[i]].position;
+  return o || !tr->system->model->direction || count == 0 ? RIC_OK : close_gaps(tr, obstacles, count, error);
+}
+
+/* Gap rates of contacts become zero: to rounding, and at coordinates exactly. */
+static ric_status halt(ric_trajectory *tr, const index_list *list, ric_error *error) {
+  const ric_system *s = tr->system;
+  ric_flow *f = tr->flow;
+  double loss;
+  if (list->count == 0 || !s->model->direction)
+    return RIC_OK;
+  RIC_TRY(impact_reflect(&tr->law, f->time, f->q, f->u, list->items, NULL, list->count, &loss, error));
+  tr->run->impact_loss += loss;
+  for (size_t i = 0; s->obstacles && i < list->count; i++)
+    f->u[s->obstacles[list->items[i]].coordinate] = 0;
+  return RIC_OK;
+}
+
+ric_status contacts_keep_on(ric_trajectory *tr, bool *moved, ric_error *error) {
+  *moved = false;
+  for (size_t i = 0; i < tr->held.count && !tr->system->obstacles && tr->system->model->direction; i++) {
+    double gap = ric_system_gap(tr->system, tr->held.items[i], tr->flow->time, tr->flow->q);
+    *moved |= fabs(gap) > tr->locator.noise;
+  }
+  if (!*moved)
+    return RIC_OK;
+  RIC_TRY(contacts_put_on(tr, tr->held.items, tr->held.count, error));
+  return halt(tr, &tr->held, error);
+}
+
+/* Whether contacts that persist leave the motion a direction. A user's contact that comes when they do not is held by
+ * them already. */
+static bool is_free(const ric_trajectory *tr) {
+  const ric_system *s = tr->system;
+  size_t held = 0;
+  if (s->obstacles)
+    return true;
+  for (size_t i = 0; i < tr->held.count; i++)
+    held += contact_persists(tr, tr->held.items[i]);
+  return held < (s->speeds ? s->speeds : s->coordinates);
+}
+
+static ric_status conclude(ric_trajectory *tr, size_t obstacle, bool persists, ric_error *error) {
+  if (persists && (contact_persists(tr, obstacle) || is_free(tr)))
+    return contact_rests(tr, obstacle, error);
+  return contact_opens(tr, obstacle, DEPARTS_SLOWLY, error);
+}
+
+/* Accelerations of the settling contacts with all of them open, then with their forces. */
+static ric_status find_forces(ric_trajectory *tr, ric_error *error) {
+  ric_flow *f = tr->flow;
+  const index_list *list = &tr->settling;
+  RIC_TRY(make_room(tr, error));
+  for (size_t i = 0; i < list->count; i++)
+    flow_set_contact(f, list->items[i], CONTACT_OPEN);
+  RIC_TRY(find_rates(tr, f->time, f->q, f->u, error));
+  for (size_t i = 0; i < list->count; i++)
+    RIC_TRY(read_acceleration(tr, f->time, f->q, f->u, list->items[i], &tr->accelerations[i], error));
+  return contact_forces(&tr->law, f->time, f->q, list->items, tr->accelerations, list->count, tr->forces, error);
+}
+
+/* Contacts that press have gap and gap rate zero, and so have those that touch and neither press nor leave: what errors
+ * have left of theirs would set the body rocking between its redundant contacts. */
+static ric_status come_to_rest(ric_trajectory *tr, ric_error *error) {
+  tr->closed.count = 0;
+  for (size_t i = 0; i < tr->settling.count; i++)
+    if (!(tr->accelerations[i] > 0))
+      RIC_TRY(index_list_add(&tr->closed, tr->settling.items[i], error));
+  RIC_TRY(contacts_put_on(tr, tr->closed.items, tr->closed.count, error));
+  return halt(tr, &tr->closed, error);
+}
+
+ric_status contacts_settle(ric_trajectory *tr, ric_error *error) {
+  index_list *list = &tr->settling;
+  if (list->count == 0)
+    return RIC_OK;
+  RIC_TRY(find_forces(tr, error));
+  RIC_TRY(come_to_rest(tr, error));
+  for (size_t i = 0; i < list->count; i++) {
+    bool neutral = list->count == 1 && !(tr->accelerations[i] > 0);
+    RIC_TRY(conclude(tr, list->items[i], tr->forces[i] > 0 || neutral, error));
+  }
+  list->count = 0;
+  contacts_forget_released(tr);
+  return RIC_OK;
 }

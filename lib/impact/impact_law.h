@@ -10,8 +10,8 @@
 #ifndef RICOCHET_IMPACT_LAW_H
 #define RICOCHET_IMPACT_LAW_H
 
-#include "complementarity.h"
 #include "model/system_model.h"
+#include "numeric/complementarity.h"
 
 /** One contact at the time of impact. */
 typedef struct impact {

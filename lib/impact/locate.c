@@ -1,15 +1,149 @@
+/* Gaps and forces of contacts as polynomials along a step, and where they are zero first. */
 #include "locate.h"
 
 #include <stdlib.h>
 
-#include "flow/poly_look.h"
-#include "growing.h"
+#include "numeric/chebyshev.h"
+#include "numeric/list.h"
+#include "numeric/poly_look.h"
+
+enum { GAP_DEGREE = 12, GAP_NODES = GAP_DEGREE + 1, GAP_PROBES = 2 };
+
+enum { POINTS = GAP_NODES + GAP_PROBES };
+static const double probes[GAP_PROBES] = {0.31830988618379067, 0.80901699437494742}; /* far from the nodes */
+
+ric_status gap_reader_init(gap_reader *reader, ric_flow *flow, ric_error *error) {
+  const ric_system *s = flow->system;
+  size_t size = s->coordinates + s->speeds;
+  *reader = (gap_reader){.flow = flow, .from = NAN, .to = NAN};
+  if (s->obstacles && flow->method->reaction)
+    return RIC_OK;
+  reader->states = malloc(POINTS * size * sizeof *reader->states);
+  return reader->states ? RIC_OK : ric_fail(error, RIC_ENOMEM, "no memory for the gaps of %zu coordinates", size);
+}
+
+void gap_reader_clear(gap_reader *reader) {
+  free(reader->states);
+  *reader = (gap_reader){0};
+}
+
+void gap_reader_reset(gap_reader *reader) {
+  reader->from = reader->to = NAN;
+}
+
+static void read_coordinate(const ric_segment *piece, const ric_obstacle *o, gap_part *part) {
+  const double *c = piece->coef + (o->coordinate - piece->first);
+  part->degree = piece->degree;
+  for (int j = 0; j <= piece->degree; j++)
+    part->c[j] = o->side * c[(size_t)j * piece->stride];
+  part->c[0] = o->side * (c[0] - o->position);
+}
+
+static void differentiate(const ric_segment *piece, gap_part *part) {
+  for (int j = 1; j <= part->degree; j++)
+    part->c[j - 1] = j * part->c[j] / piece->length;
+  part->c[part->degree] = 0;
+}
+
+static double point(int k) {
+  return k < GAP_NODES ? chebyshev_point(k, GAP_DEGREE) : probes[k - GAP_NODES];
+}
+
+static void states_at_points(gap_reader *r, const ric_segment *piece, double from, double to) {
+  size_t n = r->flow->system->coordinates, m = r->flow->system->speeds;
+  if (r->from == from && r->to == to)
+    return;
+  for (int k = 0; k < POINTS; k++) {
+    double *q = r->states + (size_t)k * (n + m);
+    ric_segment_state(piece, from + point(k) * (to - from), q, m ? q + n : NULL);
+  }
+  r->from = from;
+  r->to = to;
+}
+
+static const char *value_at(const gap_reader *r, size_t obstacle, contact_function what, double t, const double *q,
+                            double *value) {
+  const ric_system *s = r->flow->system;
+  if (what == WATCH_FORCE)
+    return s->model->reaction(s, r->flow->contact, obstacle, t, q, q + s->coordinates, value);
+  if (what == WATCH_RATE)
+    return s->model->gap_rate(s, obstacle, t, q, q + s->coordinates, value);
+  return s->model->gap(s, obstacle, t, q, value);
+}
+
+/* The size of the last terms, and of what is missed where the interpolant was not made to be right. */
+static double residual_of(const double *a, const double *c, const double *value, double tolerance) {
+  double size = 1, missed = fabs(a[GAP_DEGREE]) + fabs(a[GAP_DEGREE - 1]);
+  for (int j = 0; j < GAP_NODES; j++)
+    size = fmax(size, fabs(a[j]));
+  for (int k = 0; k < GAP_PROBES; k++)
+    missed =
+        fmax(missed, fabs(ric_poly_value(c, GAP_DEGREE, probes[k], NULL) - value[GAP_NODES + k]) / 10 - 1e-12 * size);
+  return missed / (fmax(tolerance, 1e-14) * size);
+}
+
+bool gap_is_resolved(const gap_part *part, double before) {
+  return part->residual <= 1 || (part->residual > before / 8 && part->residual <= 1e5);
+}
+
+static const char *interpolate(gap_reader *r, const ric_segment *piece, size_t obstacle, contact_function what,
+                               gap_part *part) {
+  size_t size = r->flow->system->coordinates + r->flow->system->speeds;
+  double value[POINTS], a[GAP_NODES], width = part->to - part->from;
+  states_at_points(r, piece, part->from, part->to);
+  for (int k = 0; k < POINTS; k++) {
+    double t = piece->start + (part->from + point(k) * width) * piece->length;
+    const char *trouble = value_at(r, obstacle, what, t, r->states + (size_t)k * size, &value[k]);
+    if (trouble)
+      return trouble;
+  }
+  chebyshev_coefficients(value, GAP_DEGREE, a);
+  part->degree = GAP_DEGREE;
+  chebyshev_to_powers(a, GAP_DEGREE, part->c);
+  bool rough = what == WATCH_FORCE && !r->flow->system->obstacles; /* from differences of gap rates */
+  part->residual = residual_of(a, part->c, value, fmax(r->flow->options.tolerance, rough ? 1e-7 : 0));
+  return NULL;
+}
+
+const char *gap_read(gap_reader *reader, const ric_segment *piece, size_t obstacle, contact_function what, double from,
+                     double to, gap_part *part) {
+  const ric_flow *flow = reader->flow;
+  bool of_coordinate = what != WATCH_FORCE && flow->system->obstacles;
+  part->from = from;
+  part->to = to;
+  part->residual = 0;
+  if (of_coordinate)
+    read_coordinate(piece, &flow->system->obstacles[obstacle], part);
+  else if (what == WATCH_FORCE && flow->method->reaction)
+    part->degree = flow->method->reaction(reader->flow, obstacle, part->c);
+  else {
+    const char *trouble = interpolate(reader, piece, obstacle, what, part);
+    if (trouble)
+      return trouble;
+  }
+  if (of_coordinate && what == WATCH_RATE)
+    differentiate(piece, part);
+  for (int j = 0; what == WATCH_PRESS && j <= part->degree; j++)
+    part->c[j] = -part->c[j];
+  return part->degree < 0 ? "the force of a held contact could not be evaluated" : NULL;
+}
 
 enum {
   MOST_PARTS = 1 << 17, /* into which a step is cut where a function is hard to interpolate */
   HALVINGS = 40,
   FEW_COORDINATES = 4
 };
+
+void locator_clear(locator *l) {
+  gap_reader_clear(&l->reader);
+  free(l->departure);
+  free(l->base);
+  free(l->lower);
+  free(l->upper);
+  free(l->roots.hits);
+  free(l->grazes.hits);
+  *l = (locator){0};
+}
 
 ric_status locator_init(locator *l, ric_flow *flow, double grazing_tol, ric_error *error) {
   size_t count = flow->system->obstacle_count;
@@ -23,19 +157,8 @@ ric_status locator_init(locator *l, ric_flow *flow, double grazing_tol, ric_erro
   return ric_fail(error, RIC_ENOMEM, "no memory for %zu obstacles", count);
 }
 
-void locator_clear(locator *l) {
-  gap_reader_clear(&l->reader);
-  free(l->departure);
-  free(l->base);
-  free(l->lower);
-  free(l->upper);
-  free(l->roots.hits);
-  free(l->grazes.hits);
-  *l = (locator){0};
-}
-
-static ric_status add_hit(hit_list *list, hit h, ric_error *error) {
-  hit *hits = growing_room(list->hits, list->count, &list->capacity, sizeof *hits);
+static ric_status add_root(contact_root_list *list, contact_root h, ric_error *error) {
+  contact_root *hits = list_room(list->hits, list->count, &list->capacity, sizeof *hits);
   if (!hits)
     return ric_fail(error, RIC_ENOMEM, "no memory for more than %zu events at one time", list->count);
   list->hits = hits;
@@ -56,7 +179,7 @@ static ric_status found_root(scan *s, size_t obstacle, double x) {
     return RIC_OK;
   if (x < s->l->first)
     s->l->first = x;
-  return add_hit(&s->l->roots, (hit){.obstacle = obstacle, .x = x, .depth = NAN}, s->error);
+  return add_root(&s->l->roots, (contact_root){.obstacle = obstacle, .x = x, .depth = NAN}, s->error);
 }
 
 /* Cuts a part off behind the first root so far, or the horizon: what comes later is of no interest, and on the short
@@ -125,8 +248,8 @@ static ric_status look_at_gap(scan *s, size_t obstacle, const gap_part *part, de
   *found = first_root(s, obstacle, part, from, &y);
   if (from != DEPARTS_SLOWLY && ric_poly_first_minimum(part->c, part->degree, s->l->grazing_tol, &at, &least) &&
       is_near_miss(part, *found, y, at, least, s->l->noise))
-    RIC_TRY(
-        add_hit(&s->l->grazes, (hit){.obstacle = obstacle, .x = part->from + at * width, .depth = least}, s->error));
+    RIC_TRY(add_root(&s->l->grazes, (contact_root){.obstacle = obstacle, .x = part->from + at * width, .depth = least},
+                     s->error));
   return *found ? found_root(s, obstacle, part->from + y * width) : RIC_OK;
 }
 
@@ -137,15 +260,16 @@ static ric_status look_at_root(scan *s, size_t obstacle, const gap_part *part, d
   return *found ? found_root(s, obstacle, part->from + y * (part->to - part->from)) : RIC_OK;
 }
 
-static ric_status look(scan *s, size_t obstacle, watch what, const gap_part *part, bool *found) {
+static ric_status find_contact_root(scan *s, size_t obstacle, contact_function what, const gap_part *part,
+                                    bool *found) {
   departure from = part->from == 0 ? (departure)s->l->departure[obstacle] : DEPARTED;
   if (what == WATCH_GAP && !system_complies(s->flow->system, obstacle))
     return look_at_gap(s, obstacle, part, from, found);
   return look_at_root(s, obstacle, part, what == WATCH_FORCE ? DEPARTED : from, found);
 }
 
-static ric_status scan_part(scan *s, const ric_segment *piece, size_t obstacle, watch what, double from, double to,
-                            double before, int halvings, bool *found) {
+static ric_status scan_part(scan *s, const ric_segment *piece, size_t obstacle, contact_function what, double from,
+                            double to, double before, int halvings, bool *found) {
   gap_part part;
   const char *trouble = gap_read(&s->l->reader, piece, obstacle, what, from, to, &part);
   *found = false;
@@ -154,7 +278,7 @@ static ric_status scan_part(scan *s, const ric_segment *piece, size_t obstacle, 
   if (!shorten(s, &part))
     return RIC_OK;
   if (gap_is_resolved(&part, before))
-    return look(s, obstacle, what, &part, found);
+    return find_contact_root(s, obstacle, what, &part, found);
   if (halvings == 0)
     return ric_fail(s->error, RIC_ELIMIT, "at t = %.10g, obstacle %zu: its %s varies too fast to be followed",
                     piece->start + from * piece->length, obstacle, what == WATCH_FORCE ? "force" : "gap");
@@ -168,13 +292,13 @@ static ric_status scan_part(scan *s, const ric_segment *piece, size_t obstacle, 
 }
 
 static ric_status scan_contact(scan *s, const ric_segment *piece, size_t obstacle) {
-  static const watch watches[] = {
+  static const contact_function functions[] = {
       [CONTACT_OPEN] = WATCH_GAP, [CONTACT_HELD] = WATCH_FORCE, [CONTACT_PRESSED] = WATCH_PRESS};
   contact_state now = flow_contact(s->flow, obstacle);
   bool found;
   if (now == CONTACT_PASSED)
     return RIC_OK;
-  return scan_part(s, piece, obstacle, watches[now], 0, 1, INFINITY, HALVINGS, &found);
+  return scan_part(s, piece, obstacle, functions[now], 0, 1, INFINITY, HALVINGS, &found);
 }
 
 static ric_status make_room(locator *l, size_t width, ric_error *error) {
@@ -220,17 +344,17 @@ static ric_status scan_piece(scan *s, const ric_segment *piece) {
 }
 
 static int by_obstacle(const void *a, const void *b) {
-  size_t x = ((const hit *)a)->obstacle, y = ((const hit *)b)->obstacle;
+  size_t x = ((const contact_root *)a)->obstacle, y = ((const contact_root *)b)->obstacle;
   return x < y ? -1 : x > y;
 }
 
 static int by_position(const void *a, const void *b) {
-  double x = ((const hit *)a)->x, y = ((const hit *)b)->x;
+  double x = ((const contact_root *)a)->x, y = ((const contact_root *)b)->x;
   return x < y ? -1 : x > y ? 1 : by_obstacle(a, b);
 }
 
 /* Drops what comes later than the first root, which was not known while the pieces were looked at. */
-static void keep(hit_list *list, double latest) {
+static void keep(contact_root_list *list, double latest) {
   size_t kept = 0;
   for (size_t i = 0; i < list->count; i++)
     if (list->hits[i].x <= latest)

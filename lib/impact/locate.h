@@ -1,12 +1,62 @@
-/* Where contacts begin and end on a step of a flow: internal to the library.
+/* Gaps and forces of contacts as polynomials along a step, and where they are zero first. Internal to the library. */
+#ifndef RICOCHET_LOCATE_H
+#define RICOCHET_LOCATE_H
+
+#include "flow/flow_method.h"
+
+/* What is watched of a contact along a piece of motion, as polynomials.
+ *
+ * Obstacles at coordinates: the gap is linear in the state and its polynomial that of the coordinate, exact; so are the
+ * forces of held contacts that a Taylor flow gives. Everything else is interpolated at Chebyshev points, on halves of
+ * the interval where a degree of 12 does not resolve it to the flow's tolerance. Two points besides the nodes must
+ * agree, so that oscillations do not hide between them; a function that does much within a fraction of a step still
+ * can, and `longest_step` is the user's bound for it. */
+
+/** Functions that are positive until the next event of a contact, and the gap rate, which shows where the gap is
+ * smallest: gaps that hardly change over a step lose that in their rounding. */
+typedef enum contact_function {
+  WATCH_GAP,   /* of an open contact */
+  WATCH_PRESS, /* minus the gap of a pressed one */
+  WATCH_FORCE, /* of a held one */
+  WATCH_RATE   /* of the gap, in time */
+} contact_function;
+
+/** The function on a part [from, to] of a piece, in y = (x - from) / (to - from). */
+typedef struct gap_part {
+  double from, to;
+  int degree;
+  double c[RIC_POLY_DEGREE + 1];
+  double residual; /* what the interpolation misses, over the tolerance; 0 where nothing is interpolated */
+} gap_part;
+
+/** Workspace of the interpolation. */
+typedef struct gap_reader {
+  ric_flow *flow;
+  double *states;  /* [GAP_NODES + GAP_PROBES][n + m] at the points of a part; NULL where nothing is interpolated */
+  double from, to; /* that part */
+} gap_reader;
+
+ric_status gap_reader_init(gap_reader *reader, ric_flow *flow, ric_error *error);
+void gap_reader_clear(gap_reader *reader);
+
+/** A new piece: forgets the states. */
+void gap_reader_reset(gap_reader *reader);
+
+/** The function on [from, to] of a piece that contains the obstacle's coordinate.
+ *  @returns NULL, or why a callback failed. */
+const char *gap_read(gap_reader *reader, const ric_segment *piece, size_t obstacle, contact_function what, double from,
+                     double to, gap_part *part);
+
+/** Whether a part will do: its interpolation meets the tolerance, or it is no better than that of the part twice as
+ * long
+ *  (`before`, INFINITY for none), so that what is left is rounding of the function. */
+bool gap_is_resolved(const gap_part *part, double before);
+
+/* Where contacts begin and end on a step of a flow.
  *
  * One locator for all flows and all kinds of contact. Each contact has a function that is positive until its next
  * event: the gap of an open obstacle, the force of a held one, minus the gap of a pressed one. Bounds exclude most of
  * them at once; the first roots of the rest are found with certainty (polynomial.h). */
-#ifndef RICOCHET_LOCATE_H
-#define RICOCHET_LOCATE_H
-
-#include "gap.h"
 
 /** How an open or pressed contact has begun; tells a root at the start of the step from the next one. */
 typedef enum departure {
@@ -16,16 +66,16 @@ typedef enum departure {
 } departure;
 
 /** An event on the step. */
-typedef struct hit {
+typedef struct contact_root {
   size_t obstacle;
   double x;     /* position in the step */
   double depth; /* grazing without contact: the minimum of the gap; NaN: a root */
-} hit;
+} contact_root;
 
-typedef struct hit_list {
-  hit *hits;
+typedef struct contact_root_list {
+  contact_root *hits;
   size_t count, capacity;
-} hit_list;
+} contact_root_list;
 
 typedef struct locator {
   gap_reader reader;
@@ -36,9 +86,9 @@ typedef struct locator {
   double horizon;            /* the step was looked at up to here: 1 unless functions vary too fast for all of it */
   double *lower, *upper;     /* bounds of the coordinates of a piece */
   size_t width;
-  double first;    /* position of the first root in the step; > 1 when there is none */
-  hit_list roots;  /* those within the time tolerance of it */
-  hit_list grazes; /* minima above zero before it */
+  double first;             /* position of the first root in the step; > 1 when there is none */
+  contact_root_list roots;  /* those within the time tolerance of it */
+  contact_root_list grazes; /* minima above zero before it */
 } locator;
 
 ric_status locator_init(locator *l, ric_flow *flow, double grazing_tol, ric_error *error);

@@ -1,9 +1,234 @@
-#include "ricochet/saltation.h"
+/* Saltation matrices: how tangent vectors go through an impact. */
+#include "saltation.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-#include "tangent_jump.h"
+#include "model/system_model.h"
+#include "numeric/largest.h"
+#include "numeric/path_derivative.h"
+#include "ricochet/saltation.h"
+
+ric_status tangent_jump_init(tangent_jump *j, const ric_system *system, impact_solver *law, size_t columns,
+                             ric_error *error) {
+  size_t size = system->coordinates + system->speeds;
+  *j = (tangent_jump){0};
+  double *store = malloc((8 * size + columns) * sizeof *store);
+  if (!store)
+    return ric_fail(error, RIC_ENOMEM, "no memory for impacts of %zu tangent vectors", columns);
+  *j = (tangent_jump){.system = system, .law = law, .columns = columns};
+  j->rates_before = store;
+  j->rates_after = store + size;
+  j->line = store + 2 * size;
+  j->point = store + 3 * size;
+  j->state = store + 4 * size;
+  j->work = store + 5 * size;
+  j->derivative = store + 7 * size;
+  j->shift = store + 8 * size;
+  return RIC_OK;
+}
+
+void tangent_jump_clear(tangent_jump *j) {
+  free(j->rates_before);
+  *j = (tangent_jump){0};
+}
+
+static ric_status blame(ric_error *error, double t, size_t obstacle, const char *trouble) {
+  return ric_fail(error, RIC_ECALLBACK, "at t = %g, obstacle %zu: %s", t, obstacle, trouble);
+}
+
+/* One impact being passed. */
+typedef struct passage {
+  tangent_jump *jump;
+  double t;
+  const jump_group *group;
+  ric_error *error;
+} passage;
+
+/* --- impact map -------------------------------------------------------------------------------------------------- */
+
+/* The map of a first-order system in place; one that sticks goes as far as the gap rate is zero. */
+static const char *map_state(const passage *p, double t, double *x) {
+  const ric_system *s = p->jump->system;
+  size_t obstacle = p->group->obstacles[0];
+  double *after = p->jump->law->after, rate, rate_end, part = 1;
+  const char *trouble = s->model->impact(s, obstacle, t, x, after);
+  if (!trouble && p->group->sticks) {
+    trouble = s->model->gap_rate(s, obstacle, t, x, NULL, &rate);
+    if (!trouble)
+      trouble = s->model->gap_rate(s, obstacle, t, after, NULL, &rate_end);
+    part = trouble ? 1 : rate / (rate - rate_end);
+  }
+  for (size_t i = 0; i < s->coordinates && !trouble; i++)
+    x[i] += part * (after[i] - x[i]);
+  return trouble;
+}
+
+/* The impact map at a time and a state that may be off the obstacle. */
+static const char *map(const passage *p, double t, double *q, double *u) {
+  const jump_group *g = p->group;
+  if (!p->jump->system->model->direction)
+    return map_state(p, t, q);
+  ric_status status = impact_reflect(p->jump->law, t, q, u, g->obstacles, g->restitution, g->count, NULL, p->error);
+  return status == RIC_OK ? NULL : "the impact law failed beside the impact";
+}
+
+static const char *map_on_line(void *user, double x, double *value) {
+  const passage *p = user;
+  const tangent_jump *j = p->jump;
+  size_t n = j->system->coordinates, size = n + j->system->speeds;
+  for (size_t i = 0; i < size; i++)
+    j->point[i] = j->state[i] + x * j->line[i];
+  const char *trouble = map(p, p->t + x * j->in_time, j->point, j->point + n);
+  memcpy(value, j->point, size * sizeof *value);
+  return trouble;
+}
+
+/* The map of a first-order system means something where the gap closes: there the step stays. */
+static const char *keep_closing(const passage *p, double *step) {
+  const tangent_jump *j = p->jump;
+  const ric_system *s = j->system;
+  size_t obstacle = p->group->obstacles[0];
+  double here, there, rise = 0;
+  const char *trouble = s->model->gap_rate(s, obstacle, p->t, j->state, NULL, &here);
+  for (int sign = -1; sign <= 1 && !trouble; sign += 2) {
+    for (size_t i = 0; i < s->coordinates; i++)
+      j->point[i] = j->state[i] + sign * *step * j->line[i];
+    trouble = s->model->gap_rate(s, obstacle, p->t + sign * *step * j->in_time, j->point, NULL, &there);
+    rise = fmax(rise, trouble ? 0 : there - here);
+  }
+  if (here < 0 && rise > -here / 2)
+    *step *= -here / 2 / rise;
+  return trouble;
+}
+
+/* DG along j->line, in place. */
+static const char *differentiate(passage *p) {
+  tangent_jump *j = p->jump;
+  size_t n = j->system->coordinates, size = n + j->system->speeds;
+  if (j->system->obstacles) /* the law is linear in the speeds, and depends on nothing else */
+    return map(p, p->t, j->line, j->line + n);
+  double place = fmax(largest(j->line, n), fabs(j->in_time));
+  double step = system_tangent_step(place, largest(j->line + n, size - n), largest(j->state + n, size - n));
+  const char *trouble = j->system->model->direction ? NULL : keep_closing(p, &step);
+  if (!trouble)
+    trouble = path_derivative(map_on_line, p, step, size, j->derivative, j->work);
+  if (!trouble)
+    memcpy(j->line, j->derivative, size * sizeof *j->line);
+  return trouble;
+}
+
+/* --- passage ----------------------------------------------------------------------------------------------------- */
+
+static ric_status read_rates(const passage *p, const unsigned char *contact, const double *q, const double *u,
+                             double *rates) {
+  const ric_system *s = p->jump->system;
+  const char *trouble = s->model->rate(s, contact, p->t, q, u, rates, rates + s->coordinates);
+  return trouble ? blame(p->error, p->t, p->group->obstacles[0], trouble) : RIC_OK;
+}
+
+/* Sets `shift` [columns], the times by which neighbouring motions are late. */
+static ric_status find_shifts(const passage *p, const double *q, const double *u, const tangents *d, double grazing_tol,
+                              ric_saltation_kind *kind) {
+  const tangent_jump *j = p->jump;
+  const ric_system *s = j->system;
+  size_t obstacle = p->group->obstacles[0];
+  double rate, acceleration;
+  const char *trouble = s->model->gap_rate(s, obstacle, p->t, q, u, &rate);
+  if (!trouble)
+    trouble = s->model->gap_acceleration(s, obstacle, p->t, q, u, j->rates_before, j->rates_before + s->coordinates,
+                                         &acceleration);
+  if (!trouble)
+    trouble = s->model->gap_derivative(s, obstacle, p->t, q, d, j->shift);
+  if (trouble)
+    return blame(p->error, p->t, obstacle, trouble);
+  if (!(rate < 0))
+    return ric_fail(p->error, RIC_EINVAL, "at t = %g: the gap rate of obstacle %zu is %g, expected below 0", p->t,
+                    obstacle, rate);
+  bool shallow = acceleration > 0 && rate * rate <= 2 * acceleration * grazing_tol;
+  *kind = shallow || -rate < grazing_tol ? RIC_SALTATION_GRAZING : RIC_SALTATION_DIFFERENTIABLE;
+  for (size_t k = 0; k < d->columns; k++)
+    j->shift[k] /= -rate;
+  return RIC_OK;
+}
+
+static double *row(const tangents *d, size_t i, size_t coordinates) {
+  return i < coordinates ? d->q + i * d->columns : d->u + (i - coordinates) * d->columns;
+}
+
+/* Column k becomes DG along j->line, which it and j->in_time are. */
+static ric_status map_column(passage *p, const tangents *d, size_t k) {
+  tangent_jump *j = p->jump;
+  size_t n = j->system->coordinates, size = n + j->system->speeds;
+  const char *trouble = differentiate(p);
+  if (trouble)
+    return blame(p->error, p->t, p->group->obstacles[0], trouble);
+  for (size_t i = 0; i < size; i++)
+    row(d, i, n)[k] = j->line[i];
+  return RIC_OK;
+}
+
+/* One tangent vector, moved to the obstacle; the rates after the impact are subtracted later. */
+static ric_status pass_column(passage *p, const tangents *d, size_t k) {
+  tangent_jump *j = p->jump;
+  size_t n = j->system->coordinates, size = n + j->system->speeds;
+  for (size_t i = 0; i < size; i++)
+    j->line[i] = row(d, i, n)[k] + j->rates_before[i] * j->shift[k];
+  j->in_time = j->shift[k];
+  return map_column(p, d, k);
+}
+
+static void keep_state(tangent_jump *j, const double *q, const double *u) {
+  size_t n = j->system->coordinates, m = j->system->speeds;
+  memcpy(j->state, q, n * sizeof *q);
+  if (m > 0)
+    memcpy(j->state + n, u, m * sizeof *u);
+}
+
+ric_status tangent_jump_map(tangent_jump *j, double t, const jump_group *group, double *q, double *u, const tangents *d,
+                            const double *in_time, ric_error *error) {
+  passage p = {.jump = j, .t = t, .group = group, .error = error};
+  size_t n = j->system->coordinates, size = n + j->system->speeds;
+  keep_state(j, q, u);
+  for (size_t k = 0; k < d->columns; k++) {
+    for (size_t i = 0; i < size; i++)
+      j->line[i] = row(d, i, n)[k];
+    j->in_time = in_time[k];
+    RIC_TRY(map_column(&p, d, k));
+  }
+  const char *trouble = map(&p, t, q, u);
+  return trouble ? blame(error, t, group->obstacles[0], trouble) : RIC_OK;
+}
+
+ric_status tangent_jump_apply(tangent_jump *j, double t, const jump_group *group, double grazing_tol,
+                              unsigned char *contact, const unsigned char *after, double *q, double *u,
+                              const tangents *d, ric_saltation_kind *kind, ric_error *error) {
+  passage p = {.jump = j, .t = t, .group = group, .error = error};
+  size_t n = j->system->coordinates, m = j->system->speeds;
+  RIC_TRY(read_rates(&p, contact, q, u, j->rates_before));
+  RIC_TRY(find_shifts(&p, q, u, d, grazing_tol, kind));
+  if (*kind == RIC_SALTATION_GRAZING)
+    return RIC_OK;
+  keep_state(j, q, u);
+  for (size_t k = 0; k < d->columns; k++)
+    RIC_TRY(pass_column(&p, d, k));
+  const char *trouble = map(&p, t, q, u); /* last: maps remember their restitution */
+  if (trouble)
+    return blame(error, t, group->obstacles[0], trouble);
+  memmove(contact, after, j->system->obstacle_count); /* they may be the same */
+  RIC_TRY(read_rates(&p, contact, q, u, j->rates_after));
+  for (size_t i = 0; i < n + m; i++)
+    for (size_t k = 0; k < d->columns; k++)
+      row(d, i, n)[k] -= j->rates_after[i] * j->shift[k];
+  return RIC_OK;
+}
+
+bool tangent_jumps_agree(const double *a, const double *b, size_t size) {
+  double scale = fmax(largest(a, size), largest(b, size)), most = 0;
+  for (size_t i = 0; i < size; i++)
+    most = fmax(most, fabs(a[i] - b[i]));
+  return most <= 1e-9 * scale;
+}
 
 enum { MOST_ROUNDS = 1000 /* of coupled contacts that hit each other back */ };
 
@@ -95,7 +320,7 @@ static ric_status run(sequence *s, bool backwards, double *S, ric_error *error) 
   return RIC_OK;
 }
 
-static ric_status check(const sequence *s, ric_error *error) {
+static ric_status check_sequence(const sequence *s, ric_error *error) {
   if (s->count == 0)
     return ric_fail(error, RIC_EINVAL, "no obstacle is hit, expected one or more");
   if (!(s->grazing_tol > 0))
@@ -132,7 +357,7 @@ ric_status ric_saltation_find(const ric_system *system, double t, const double *
   size_t size = system->coordinates + system->speeds, square = size * size;
   sequence s = {
       .system = system, .t = t, .grazing_tol = grazing_tol, .q = q, .u = u, .obstacles = obstacles, .count = count};
-  RIC_TRY(check(&s, error));
+  RIC_TRY(check_sequence(&s, error));
   double *found = malloc(2 * (square + size) * sizeof *found);
   ric_status status = found ? begin(&s, error) : ric_fail(error, RIC_ENOMEM, "no memory for %zu states", size);
   if (status == RIC_OK)

@@ -1,11 +1,58 @@
-#include "ricochet/trajectory.h"
+/* Event-driven motions: the main loop, its options and outcomes, and samples. */
+#include "trajectory.h"
 
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "trajectory_state.h"
+#include "ricochet/trajectory.h"
+
+/* Position of a time in a piece. */
+static double position(const ric_segment *piece, double time) {
+  double x = (time - piece->start) / piece->length;
+  return x < 0 ? 0 : x > 1 ? 1 : x;
+}
+
+static void fill(const ric_sampler *s, const ric_segment *piece, size_t k) {
+  size_t speeds = piece->speeds ? piece->speeds : piece->coordinates;
+  double *u = s->u && s->speeds ? s->u + k * s->speeds + (speeds == piece->coordinates ? piece->first : 0) : NULL;
+  ric_segment_state(piece, position(piece, s->times[k]), s->q + k * s->coordinates + piece->first, u);
+}
+
+/* Times in [start, end of the part): the end itself belongs to what comes after. */
+int ric_sampler_segment(const ric_segment *piece, double end, void *sampler) {
+  ric_sampler *s = sampler;
+  double until = piece->start + end * piece->length;
+  size_t k = s->next;
+  for (; k < s->count && s->times[k] < until; k++)
+    fill(s, piece, k);
+  if (piece->first + piece->coordinates == s->coordinates) /* the last piece of the step */
+    s->next = k;
+  return 0;
+}
+
+const double *ric_trajectory_q(const ric_trajectory *trajectory) {
+  return trajectory->flow->q;
+}
+
+const double *ric_trajectory_u(const ric_trajectory *trajectory) {
+  return trajectory->flow->u;
+}
+
+double ric_trajectory_time(const ric_trajectory *trajectory) {
+  return trajectory->flow->time;
+}
+
+void ric_sampler_finish(ric_sampler *sampler, const ric_trajectory *trajectory) {
+  const double *q = ric_trajectory_q(trajectory), *u = ric_trajectory_u(trajectory);
+  for (; sampler->next < sampler->count && sampler->times[sampler->next] <= ric_trajectory_time(trajectory);
+       sampler->next++) {
+    memcpy(sampler->q + sampler->next * sampler->coordinates, q, sampler->coordinates * sizeof *q);
+    if (sampler->u && sampler->speeds)
+      memcpy(sampler->u + sampler->next * sampler->speeds, u, sampler->speeds * sizeof *u);
+  }
+}
 
 const char *ric_run_outcome_name(ric_run_outcome outcome) {
   static const char *const names[] = {
@@ -62,24 +109,6 @@ static ric_status build(ric_trajectory *tr, ric_error *error) {
   return RIC_OK;
 }
 
-ric_status ric_trajectory_create(const ric_system *system, const ric_trajectory_options *options,
-                                 ric_trajectory **trajectory, ric_error *error) {
-  ric_trajectory_options o = options ? *options : ric_trajectory_options_default();
-  *trajectory = NULL;
-  RIC_TRY(check_options(&o, error));
-  ric_trajectory *tr = calloc(1, sizeof *tr);
-  if (!tr)
-    return ric_fail(error, RIC_ENOMEM, "no memory for a trajectory");
-  tr->system = system;
-  tr->options = o;
-  ric_status status = build(tr, error);
-  if (status == RIC_OK)
-    *trajectory = tr;
-  else
-    ric_trajectory_destroy(&tr);
-  return status;
-}
-
 void ric_trajectory_destroy(ric_trajectory **trajectory) {
   if (!trajectory || !*trajectory)
     return;
@@ -97,9 +126,27 @@ void ric_trajectory_destroy(ric_trajectory **trajectory) {
   free(tr->accelerations);
   free(tr->forces);
   free(tr->coming);
-  carried_clear(&tr->carried);
+  impact_tangents_clear(&tr->tangents);
   free(tr);
   *trajectory = NULL;
+}
+
+ric_status ric_trajectory_create(const ric_system *system, const ric_trajectory_options *options,
+                                 ric_trajectory **trajectory, ric_error *error) {
+  ric_trajectory_options o = options ? *options : ric_trajectory_options_default();
+  *trajectory = NULL;
+  RIC_TRY(check_options(&o, error));
+  ric_trajectory *tr = calloc(1, sizeof *tr);
+  if (!tr)
+    return ric_fail(error, RIC_ENOMEM, "no memory for a trajectory");
+  tr->system = system;
+  tr->options = o;
+  ric_status status = build(tr, error);
+  if (status == RIC_OK)
+    *trajectory = tr;
+  else
+    ric_trajectory_destroy(&tr);
+  return status;
 }
 
 static ric_status check_start(const ric_trajectory *tr, double t, const double *q, ric_error *error) {
@@ -119,7 +166,7 @@ static ric_status check_start(const ric_trajectory *tr, double t, const double *
 ric_status ric_trajectory_start(ric_trajectory *tr, double t, const double *q, const double *u, ric_error *error) {
   tr->started = false;
   contacts_reset(tr);
-  tr->carried.kind = RIC_SALTATION_DIFFERENTIABLE;
+  tr->tangents.kind = RIC_SALTATION_DIFFERENTIABLE;
   RIC_TRY(ric_flow_start(tr->flow, t, q, u, error));
   RIC_TRY(check_start(tr, t, q, error));
   tr->started = tr->fresh = true;
@@ -170,12 +217,12 @@ static void show_pieces(ric_trajectory *tr, double x) {
 
 static void show_grazes(ric_trajectory *tr, double start, double length) {
   for (size_t i = 0; i < tr->locator.grazes.count; i++) {
-    const hit *h = &tr->locator.grazes.hits[i];
+    const contact_root *h = &tr->locator.grazes.hits[i];
     ric_event event = event_of(tr, RIC_EVENT_GRAZING, h->obstacle);
     event.time = start + h->x * length;
     event.depth = h->depth;
     trajectory_show(tr, &event);
-    carried_lose(tr, h->obstacle, event.time, RIC_SALTATION_GRAZING);
+    impact_tangents_lose(tr, h->obstacle, event.time, RIC_SALTATION_GRAZING);
   }
 }
 
@@ -215,7 +262,7 @@ static ric_status advance(ric_trajectory *tr, double end, ric_error *error) {
   RIC_TRY(contacts_depart(tr, error));
   RIC_TRY(contacts_keep_on(tr, &moved, error));
   if (meets) {
-    RIC_TRY(contacts_meet(tr, error));
+    RIC_TRY(contacts_onset(tr, error));
     count_event_time(tr);
   } else if (moved)
     RIC_TRY(flow_restart(f, error));
@@ -229,13 +276,13 @@ static void conclude(ric_trajectory *tr, ric_run_outcome outcome, const char *re
 }
 
 /* Whether tangent vectors are lost, which ends the run. */
-static ric_status look_at_carried(ric_trajectory *tr, bool *lost, ric_error *error) {
-  ric_saltation_kind kind = tr->carried.kind;
+static ric_status check_tangents(ric_trajectory *tr, bool *lost, ric_error *error) {
+  ric_saltation_kind kind = tr->tangents.kind;
   *lost = kind != RIC_SALTATION_DIFFERENTIABLE;
   if (!*lost)
     return RIC_OK;
   conclude(tr, kind == RIC_SALTATION_GRAZING ? RIC_RUN_GRAZING : RIC_RUN_NOT_DIFFERENTIABLE, "");
-  return carried_end(tr, tr->run->reason, sizeof tr->run->reason, error);
+  return impact_tangents_end(tr, tr->run->reason, sizeof tr->run->reason, error);
 }
 
 /* Whether the run is over, and how. */
@@ -262,12 +309,12 @@ static ric_status move(ric_trajectory *tr, double end, ric_error *error) {
     tr->fresh = false;
     RIC_TRY(contacts_begin(tr, error));
   }
-  RIC_TRY(look_at_carried(tr, &lost, error));
+  RIC_TRY(check_tangents(tr, &lost, error));
   while (!lost && !is_over(tr, end)) {
     if (ric_poll_stops(tr->options.poll))
       return ric_fail(error, RIC_ESTOPPED, "stopped at t = %g", tr->flow->time);
     RIC_TRY(advance(tr, end, error));
-    RIC_TRY(look_at_carried(tr, &lost, error));
+    RIC_TRY(check_tangents(tr, &lost, error));
   }
   return RIC_OK;
 }
@@ -311,18 +358,6 @@ ric_status ric_trajectory_run(ric_trajectory *tr, double end, const ric_observer
   if (status != RIC_OK && error)
     *error = local;
   return status;
-}
-
-double ric_trajectory_time(const ric_trajectory *trajectory) {
-  return trajectory->flow->time;
-}
-
-const double *ric_trajectory_q(const ric_trajectory *trajectory) {
-  return trajectory->flow->q;
-}
-
-const double *ric_trajectory_u(const ric_trajectory *trajectory) {
-  return trajectory->flow->u;
 }
 
 int ric_trajectory_rests(const ric_trajectory *trajectory, size_t obstacle) {

@@ -1,10 +1,12 @@
-#include "ricochet/chain.h"
-
+/* The chain: spectrum, modes, energy, resonances; and the system that is made of one. */
 #include <math.h>
+#include <stdlib.h>
 
 #include "image_ring.h"
-
-static const double pi = 3.14159265358979323846;
+#include "numeric/constants.h"
+#include "ricochet/chain.h"
+#include "ricochet/resonance.h"
+#include "ricochet/system.h"
 
 ric_chain ric_chain_default(size_t particles, double gamma) {
   return (ric_chain){.particles = particles, .ends = RIC_ENDS_PERIODIC, .gamma = gamma, .floor = -1};
@@ -65,6 +67,7 @@ double ric_chain_frequency_max(const ric_chain *chain) {
 static double cos_pi(unsigned long long a, unsigned long long b) {
   return cos(pi * (double)(a % (2 * b)) / (double)b);
 }
+
 static double sin_pi(unsigned long long a, unsigned long long b) {
   return sin(pi * (double)(a % (2 * b)) / (double)b);
 }
@@ -106,4 +109,101 @@ double ric_chain_energy(const ric_chain *chain, const double *q, const double *v
   if (chain->ends == RIC_ENDS_FIXED)
     stretched += q[0] * q[0] + q[last] * q[last];
   return (twice + chain->gamma * stretched) / 2;
+}
+
+/* The list under construction: counts everything, keeps what fits. */
+typedef struct collection {
+  double low, high;
+  ric_resonance *list;
+  size_t capacity, count;
+} collection;
+
+static void collect(collection *c, double parameter, size_t mode, unsigned harmonic) {
+  if (!(parameter >= c->low && parameter <= c->high))
+    return;
+  if (c->count < c->capacity)
+    c->list[c->count] = (ric_resonance){.parameter = parameter, .mode = mode, .harmonic = harmonic};
+  c->count++;
+}
+
+/* d omega^2 / d gamma of a mode, (12). */
+static double coupling_factor(const ric_chain *chain, size_t mode) {
+  ric_chain unit = {.particles = chain->particles, .ends = chain->ends, .gamma = 1};
+  double s = sin(ric_chain_wave_number(chain, mode) / 2);
+  return 4 * image_ring_gamma(&unit) * s * s;
+}
+
+/* (12) solved for gamma at omega = 2 pi l / T. */
+static double resonant_gamma(double factor, double period, unsigned harmonic) {
+  double frequency = 2 * pi * harmonic / period;
+  return (frequency * frequency - 1) / factor;
+}
+
+static void collect_along_gamma(collection *c, const ric_chain *chain, double period, size_t mode) {
+  double factor = coupling_factor(chain, mode);
+  for (unsigned l = 1; factor > 0 && resonant_gamma(factor, period, l) <= c->high; l++)
+    collect(c, resonant_gamma(factor, period, l), mode, l);
+}
+
+static void collect_along_period(collection *c, const ric_chain *chain, size_t mode) {
+  double shortest = 2 * pi / ric_chain_frequency(chain, mode);
+  for (unsigned l = 1; shortest * l <= c->high; l++)
+    collect(c, shortest * l, mode, l);
+}
+
+static int by_parameter(const void *a, const void *b) {
+  const ric_resonance *x = a, *y = b;
+  if (x->parameter != y->parameter)
+    return x->parameter < y->parameter ? -1 : 1;
+  return x->mode < y->mode ? -1 : x->mode > y->mode;
+}
+
+ric_status ric_chain_resonances(const ric_chain *chain, ric_along along, double period, double low, double high,
+                                ric_resonance *list, size_t capacity, size_t *count, ric_error *error) {
+  RIC_TRY(ric_chain_check(chain, error));
+  if (!(low >= 0 && low <= high && high < INFINITY))
+    return ric_fail(error, RIC_EINVAL, "range [%g, %g], expected 0 <= low <= high < infinity", low, high);
+  if (along == RIC_ALONG_GAMMA && !(period > 0 && period < INFINITY))
+    return ric_fail(error, RIC_EINVAL, "period = %g, expected 0 < period < infinity", period);
+  ric_chain extreme = *chain;
+  if (along == RIC_ALONG_GAMMA)
+    extreme.gamma = high;
+  double harmonics = ric_chain_frequency_max(&extreme) * (along == RIC_ALONG_GAMMA ? period : high) / (2 * pi);
+  if (!(harmonics <= RIC_MOST_HARMONICS))
+    return ric_fail(error, RIC_ELIMIT, "%.3g oscillations per period, expected at most %.3g", harmonics,
+                    (double)RIC_MOST_HARMONICS);
+  collection c = {.low = low, .high = high, .list = list, .capacity = capacity};
+  for (size_t mode = 0; mode < chain->particles; mode++)
+    if (along == RIC_ALONG_GAMMA)
+      collect_along_gamma(&c, chain, period, mode);
+    else
+      collect_along_period(&c, chain, mode);
+  if (list && c.count > 0)
+    qsort(list, c.count < capacity ? c.count : capacity, sizeof *list, by_parameter);
+  *count = c.count;
+  return RIC_OK;
+}
+
+double ric_chain_first_resonance(const ric_chain *chain, double period) {
+  size_t n = chain->particles, highest = chain->ends == RIC_ENDS_PERIODIC ? n / 2 : n - 1;
+  double factor = coupling_factor(chain, highest);
+  return factor > 0 && period < 2 * pi ? resonant_gamma(factor, period, 1) : NAN;
+}
+
+/* The system of a chain: its lattice, and its floors as obstacles. */
+
+ric_status ric_system_create_chain(const ric_chain *chain, ric_system **system, ric_error *error) {
+  *system = NULL;
+  RIC_TRY(ric_chain_check(chain, error));
+  ric_lattice lattice = ric_lattice_of_chain(chain);
+  ric_obstacle *floors = malloc(chain->particles * sizeof *floors);
+  size_t count = 0;
+  if (!floors)
+    return ric_fail(error, RIC_ENOMEM, "no memory for the floors of %zu particles", chain->particles);
+  for (size_t i = 0; i < chain->particles; i++)
+    if (ric_chain_floor(chain, i) > -INFINITY)
+      floors[count++] = ric_obstacle_floor(i, ric_chain_floor(chain, i));
+  ric_status status = ric_system_create_lattice(&lattice, floors, count, system, error);
+  free(floors);
+  return status;
 }

@@ -1,4 +1,11 @@
+/* The ring with images, and the modal transform of a chain on it. */
 #include "image_ring.h"
+
+#include <fftw3.h>
+#include <limits.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
 
 size_t image_ring_sites(const ric_chain *chain) {
   switch (chain->ends) {
@@ -45,4 +52,107 @@ double image_ring_entry(const ric_chain *chain, const double *kernel, size_t k, 
     break;
   }
   return direct;
+}
+
+struct lattice_transform {
+  size_t sites, length;
+  fftw_plan forward, inverse, kernel; /* kernel is NULL on a ring: the inverse of an even spectrum */
+};
+
+size_t lattice_transform_length(const lattice_transform *t) {
+  return t->length;
+}
+
+double *lattice_transform_alloc(const lattice_transform *t) {
+  double *x = fftw_malloc(t->length * sizeof *x);
+  if (x)
+    memset(x, 0, t->length * sizeof *x);
+  return x;
+}
+
+void lattice_transform_free(double *x) {
+  fftw_free(x);
+}
+
+static void make_plans(lattice_transform *t, const ric_chain *chain, double *x) {
+  int n = (int)chain->particles;
+  fftw_r2r_kind there = FFTW_R2HC, back = FFTW_HC2R;
+  if (chain->ends == RIC_ENDS_FIXED)
+    there = back = FFTW_RODFT00;
+  if (chain->ends == RIC_ENDS_FREE) {
+    there = FFTW_REDFT10;
+    back = FFTW_REDFT01;
+  }
+  t->forward = fftw_plan_r2r_1d(n, x, x, there, FFTW_ESTIMATE);
+  t->inverse = fftw_plan_r2r_1d(n, x, x, back, FFTW_ESTIMATE);
+  if (chain->ends != RIC_ENDS_PERIODIC)
+    t->kernel = fftw_plan_r2r_1d((int)(t->sites / 2 + 1), x, x, FFTW_REDFT00, FFTW_ESTIMATE);
+}
+
+void lattice_transform_destroy(lattice_transform **t) {
+  if (!t || !*t)
+    return;
+  fftw_destroy_plan((*t)->forward);
+  fftw_destroy_plan((*t)->inverse);
+  fftw_destroy_plan((*t)->kernel);
+  free(*t);
+  *t = NULL;
+}
+
+ric_status lattice_transform_create(const ric_chain *chain, lattice_transform **out, ric_error *error) {
+  ric_status status = RIC_ENOMEM;
+  double *x = NULL;
+  lattice_transform *t = calloc(1, sizeof *t);
+  if (!t)
+    goto out;
+  if (chain->particles > INT_MAX / 4) {
+    status = RIC_ELIMIT;
+    goto out;
+  }
+  t->sites = image_ring_sites(chain);
+  t->length = t->sites / 2 + 1 > chain->particles ? t->sites / 2 + 1 : chain->particles;
+  x = lattice_transform_alloc(t);
+  if (!x)
+    goto out;
+  make_plans(t, chain, x);
+  if (t->forward && t->inverse && (t->kernel || chain->ends == RIC_ENDS_PERIODIC))
+    status = RIC_OK;
+out:
+  lattice_transform_free(x);
+  if (status != RIC_OK)
+    lattice_transform_destroy(&t);
+  *out = t;
+  return status == RIC_OK ? RIC_OK
+                          : ric_fail(error, status, "cannot plan a transform of %zu particles: %s", chain->particles,
+                                     ric_status_text(status));
+}
+
+void lattice_transform_forward(const lattice_transform *t, double *x) {
+  fftw_execute_r2r(t->forward, x, x);
+}
+
+void lattice_transform_inverse(const lattice_transform *t, double *x) {
+  fftw_execute_r2r(t->inverse, x, x);
+}
+
+void lattice_transform_kernel(const lattice_transform *t, double *f) {
+  if (t->kernel) {
+    fftw_execute_r2r(t->kernel, f, f); /* f_0 + 2 sum f_j cos + (-1)^d f_{N/2} */
+  } else {
+    memset(f + t->sites / 2 + 1, 0, (t->length - t->sites / 2 - 1) * sizeof *f);
+    lattice_transform_inverse(t, f); /* half-complex: real parts f, imaginary parts 0 */
+  }
+  for (size_t d = 0; d <= t->sites / 2; d++)
+    f[d] /= (double)t->sites;
+}
+
+double lattice_transform_unit(const ric_chain *chain, size_t s) {
+  double sites = (double)image_ring_sites(chain);
+  if (chain->ends == RIC_ENDS_FIXED)
+    return sqrt(sites);
+  if (chain->ends == RIC_ENDS_FREE)
+    return s == 0 ? sqrt(2 * sites) : sqrt(sites);
+  if (s == 0 || 2 * s == chain->particles)
+    return sqrt(sites);
+  return 2 * s < chain->particles ? sqrt(sites / 2) : -sqrt(sites / 2); /* FFTW stores -sin above the middle */
 }

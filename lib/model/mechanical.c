@@ -1,19 +1,38 @@
-#include "mechanical.h"
-
+/* Mechanical systems of a user: rates, gaps, impulses, and the forces of contacts that persist. */
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "cholesky.h"
-#include "number_block.h"
-#include "user_callback.h"
+#include "numeric/largest.h"
+#include "numeric/linear.h"
+#include "numeric/number_block.h"
+#include "numeric/path_derivative.h"
+#include "system_model.h"
+#include "user_gap.h"
+
+typedef struct mechanical {
+  ric_system base;
+  ric_mechanical model;
+  user_gap gap;
+  double *restitution;                       /* [obstacles] */
+  double *numbers;                           /* one block that all the following lie in, and the place of `gap` */
+  double *mass;                              /* [m][m], factorised */
+  double *B, *b;                             /* [n][m], [n] of the last kinematics */
+  double *gradient;                          /* [n] of the last gap */
+  double *normal;                            /* [m] g of gap_rate */
+  double *path_q, *path_u, *rate_q, *rate_u; /* [n], [m]: points of a path, and free rates */
+  size_t *held;                              /* [held_most] indices of the contacts that are held */
+  size_t held_most;
+  double *held_g, *held_w, *held_matrix, *lambda; /* [held_most][m] twice, [held_most][held_most], [held_most] */
+} mechanical;
 
 static const mechanical *mechanical_of(const ric_system *system) {
   return (const mechanical *)system;
 }
 
-const char *mechanical_kinematics(const mechanical *s, double t, const double *q) {
+/** B and b at (t, q), for mechanical_velocity and mechanical_normal. */
+static const char *mechanical_kinematics(const mechanical *s, double t, const double *q) {
   size_t n = s->model.coordinates, m = s->model.speeds;
   if (!s->model.kinematics)
     return NULL;
@@ -22,7 +41,8 @@ const char *mechanical_kinematics(const mechanical *s, double t, const double *q
   return callback_check(0, s->b, n, CALLBACK_TEXTS("kinematics"));
 }
 
-void mechanical_velocity(const mechanical *s, const double *u, double *q_rate) {
+/** q' = B u + b. */
+static void mechanical_velocity(const mechanical *s, const double *u, double *q_rate) {
   size_t n = s->model.coordinates, m = s->model.speeds;
   if (!s->model.kinematics) {
     memcpy(q_rate, u, n * sizeof *u);
@@ -35,8 +55,9 @@ void mechanical_velocity(const mechanical *s, const double *u, double *q_rate) {
   }
 }
 
-const char *mechanical_normal(const mechanical *s, size_t obstacle, double t, const double *q, double *g,
-                              double *offset) {
+/** g = B^T grad h [m] and the part of the gap rate that does not depend on the speeds. */
+static const char *mechanical_normal(const mechanical *s, size_t obstacle, double t, const double *q, double *g,
+                                     double *offset) {
   size_t n = s->model.coordinates, m = s->model.speeds;
   TRY_TEXT(user_gap_gradient(&s->gap, obstacle, t, q, s->gradient, offset));
   if (!s->model.kinematics) {
@@ -52,7 +73,8 @@ const char *mechanical_normal(const mechanical *s, size_t obstacle, double t, co
   return NULL;
 }
 
-const char *mechanical_mass(const mechanical *s, double t, const double *q) {
+/** M, factorised in s->mass. */
+static const char *mechanical_mass(const mechanical *s, double t, const double *q) {
   size_t m = s->model.speeds;
   if (!s->model.mass)
     return NULL;
@@ -61,19 +83,103 @@ const char *mechanical_mass(const mechanical *s, double t, const double *q) {
   return cholesky_factor(s->mass, m) ? NULL : "the mass matrix of the mass callback is not positive definite";
 }
 
-void mechanical_mass_solve(const mechanical *s, double *x) {
+/** x [m] from M x = x. */
+static void mechanical_mass_solve(const mechanical *s, double *x) {
   if (s->model.mass)
     cholesky_solve(s->mass, s->model.speeds, x);
 }
 
-const char *mechanical_free_rate(const mechanical *s, double t, const double *q, const double *u, double *q_rate,
-                                 double *u_rate) {
+/** Rates of the free motion; leaves kinematics and mass at (t, q). */
+static const char *mechanical_free_rate(const mechanical *s, double t, const double *q, const double *u, double *q_rate,
+                                        double *u_rate) {
   TRY_TEXT(mechanical_kinematics(s, t, q));
   mechanical_velocity(s, u, q_rate);
   int code = s->model.force(t, q, u, u_rate, s->model.user);
   TRY_TEXT(callback_check(code, u_rate, s->model.speeds, CALLBACK_TEXTS("force")));
   TRY_TEXT(mechanical_mass(s, t, q));
   mechanical_mass_solve(s, u_rate); /* [FN97] (2.3) */
+  return NULL;
+}
+
+/* Contacts of mechanical systems: how gaps change along a motion, and the forces that hold them. */
+
+static double dot(const double *a, const double *b, size_t count) {
+  double sum = 0;
+  for (size_t k = 0; k < count; k++)
+    sum += a[k] * b[k];
+  return sum;
+}
+
+/* g and w = M^-1 g of contact k of the list, and its row of g^T M^-1 g. */
+static const char *held_row(const mechanical *s, size_t k, size_t count, double t, const double *q) {
+  size_t m = s->model.speeds;
+  double *g = s->held_g + k * m, *w = s->held_w + k * m, offset;
+  TRY_TEXT(mechanical_normal(s, s->held[k], t, q, g, &offset));
+  memcpy(w, g, m * sizeof *w);
+  mechanical_mass_solve(s, w);
+  for (size_t l = 0; l <= k; l++)
+    s->held_matrix[k * count + l] = dot(s->held_g + l * m, w, m);
+  return NULL;
+}
+
+typedef struct motion_path {
+  const mechanical *s;
+  size_t obstacle;
+  double t;
+  const double *q, *u, *q_rate, *u_rate;
+} motion_path;
+
+/* Step in time of the derivative of a gap rate, for coordinates that move by at most it. */
+static const double path_step = 1.0 / 512;
+
+static const char *mechanical_gap_rate(const ric_system *system, size_t obstacle, double t, const double *q,
+                                       const double *u, double *rate) {
+  const mechanical *s = (const mechanical *)system;
+  double offset;
+  TRY_TEXT(mechanical_kinematics(s, t, q));
+  TRY_TEXT(mechanical_normal(s, obstacle, t, q, s->normal, &offset));
+  *rate = dot(s->normal, u, s->model.speeds) + offset;
+  return NULL;
+}
+
+static const char *gap_rate_on(void *user, double step, double *rate) {
+  const motion_path *p = user;
+  const mechanical *s = p->s;
+  for (size_t i = 0; i < s->model.coordinates; i++)
+    s->path_q[i] = p->q[i] + step * p->q_rate[i];
+  for (size_t k = 0; k < s->model.speeds; k++)
+    s->path_u[k] = p->u[k] + step * p->u_rate[k];
+  return mechanical_gap_rate(&s->base, p->obstacle, p->t + step, s->path_q, s->path_u, rate);
+}
+
+static const char *mechanical_gap_acceleration(const ric_system *system, size_t obstacle, double t, const double *q,
+                                               const double *u, const double *q_rate, const double *u_rate,
+                                               double *acceleration) {
+  const mechanical *s = (const mechanical *)system;
+  motion_path path = {s, obstacle, t, q, u, q_rate, u_rate};
+  double step = path_step / fmax(1, largest(q_rate, s->model.coordinates));
+  return path_derivative(gap_rate_on, &path, step, 1, acceleration, NULL);
+}
+
+/** Adds the forces of the held contacts to free rates, with kinematics and mass at (t, q); s->held lists the contacts,
+ *  s->lambda their forces, `count` how many. @param contact  NULL: none */
+/* The forces make the second derivatives of the held gaps vanish: (g^T M^-1 g) lambda = -h'' of the free motion. A
+ * contact whose gradient depends on those before it is held by them and gets no force. */
+static const char *mechanical_hold(const mechanical *s, const unsigned char *contact, double t, const double *q,
+                                   const double *u, const double *q_rate, double *u_rate, size_t *count) {
+  size_t m = s->model.speeds;
+  TRY_TEXT(system_list_held(&s->base, contact, s->held_most, s->held, count));
+  for (size_t k = 0; k < *count; k++) /* all of them first: accelerations use the place of the kinematics */
+    TRY_TEXT(held_row(s, k, *count, t, q));
+  for (size_t k = 0; k < *count; k++) {
+    TRY_TEXT(mechanical_gap_acceleration(&s->base, s->held[k], t, q, u, q_rate, u_rate, &s->lambda[k]));
+    s->lambda[k] = -s->lambda[k];
+  }
+  cholesky_factor_semidefinite(s->held_matrix, *count);
+  cholesky_solve(s->held_matrix, *count, s->lambda);
+  for (size_t k = 0; k < *count; k++)
+    for (size_t i = 0; i < m; i++)
+      u_rate[i] += s->lambda[k] * s->held_w[k * m + i];
   return NULL;
 }
 
@@ -128,6 +234,19 @@ static const char *gap_derivative(const ric_system *system, size_t obstacle, dou
   return user_gap_derivative(&s->gap, obstacle, t, q, d, s->gradient, derivative);
 }
 
+static const char *mechanical_reaction(const ric_system *system, const unsigned char *contact, size_t obstacle,
+                                       double t, const double *q, const double *u, double *lambda) {
+  const mechanical *s = (const mechanical *)system;
+  size_t count;
+  TRY_TEXT(mechanical_free_rate(s, t, q, u, s->rate_q, s->rate_u));
+  TRY_TEXT(mechanical_hold(s, contact, t, q, u, s->rate_q, s->rate_u, &count));
+  *lambda = 0;
+  for (size_t k = 0; k < count; k++)
+    if (s->held[k] == obstacle)
+      *lambda = s->lambda[k];
+  return NULL;
+}
+
 static const system_model table = {.rate = rate,
                                    .gap = gap,
                                    .gap_derivative = gap_derivative,
@@ -139,7 +258,7 @@ static const system_model table = {.rate = rate,
                                    .restitution = restitution,
                                    .destroy = destroy};
 
-static ric_status check(const ric_mechanical *model, ric_error *error) {
+static ric_status check_model(const ric_mechanical *model, ric_error *error) {
   if (!(model->coordinates >= 1 && model->coordinates <= UINT32_MAX / 16))
     return ric_fail(error, RIC_EINVAL, "coordinates = %zu, expected 1 to %u", model->coordinates, UINT32_MAX / 16);
   if (!(model->speeds >= 1 && model->speeds <= model->coordinates))
@@ -177,7 +296,7 @@ static size_t lay_out(mechanical *s, double *block) {
   return used;
 }
 
-static bool allocate(mechanical *s) {
+static bool allocate_mechanical(mechanical *s) {
   size_t count = s->model.obstacles;
   s->held_most = count < s->model.speeds ? count : s->model.speeds;
   s->numbers = calloc(lay_out(s, NULL), sizeof *s->numbers);
@@ -191,7 +310,7 @@ static bool allocate(mechanical *s) {
 
 ric_status ric_system_create_mechanical(const ric_mechanical *model, ric_system **system, ric_error *error) {
   *system = NULL;
-  RIC_TRY(check(model, error));
+  RIC_TRY(check_model(model, error));
   mechanical *s = calloc(1, sizeof *s);
   if (!s)
     return ric_fail(error, RIC_ENOMEM, "no memory for a system");
@@ -202,7 +321,7 @@ ric_status ric_system_create_mechanical(const ric_mechanical *model, ric_system 
                          .uncoupled = model->obstacles <= 1};
   s->model = *model;
   s->gap = (user_gap){model->coordinates, model->gap, model->gap_gradient, model->user, NULL};
-  if (!allocate(s)) {
+  if (!allocate_mechanical(s)) {
     destroy(&s->base);
     return ric_fail(error, RIC_ENOMEM, "no memory for a mechanical system of %zu coordinates", model->coordinates);
   }

@@ -1,15 +1,18 @@
-/* What every model provides, and what is common to all systems: internal to the library.
- *
- * A model is a table of functions over a struct that begins with `ric_system`. Flows and the impact room see this table
- * only; they never ask which model it is. Functions of a model return NULL, or what went wrong as a static text: a
- * callback of the user failed, a value is not finite, a mass matrix is not positive definite. */
+/* What all systems share: life, obstacles, tangent vectors by differences. Internal to the library. */
 #ifndef RICOCHET_SYSTEM_MODEL_H
 #define RICOCHET_SYSTEM_MODEL_H
 
 #include <math.h>
 #include <stdbool.h>
 
+#include "numeric/constants.h"
 #include "ricochet/system.h"
+
+/* What every model provides, and what is common to all systems.
+ *
+ * A model is a table of functions over a struct that begins with `ric_system`. Flows and the impact room see this table
+ * only; they never ask which model it is. Functions of a model return NULL, or what went wrong as a static text: a
+ * callback of the user failed, a value is not finite, a mass matrix is not positive definite. */
 
 /** State of a contact, kept by the flow: one byte per obstacle. Models and flows tell the second and the third from all
  *  others. */
@@ -48,7 +51,7 @@ typedef struct system_model {
    */
   const char *(*rate)(const ric_system *s, const unsigned char *contact, double t, const double *q, const double *u,
                       double *q_rate, double *u_rate);
-  /** Derivatives of `rate` along tangent vectors, contacts in the given states. NULL: differences (tangent.h). */
+  /** Derivatives of `rate` along tangent vectors, contacts in the given states. NULL: differences, as below. */
   const char *(*tangent)(const ric_system *s, const unsigned char *contact, double t, const double *q, const double *u,
                          const tangents *d, const tangents *d_rate);
   const char *(*gap)(const ric_system *s, size_t obstacle, double t, const double *q, double *gap);
@@ -132,7 +135,7 @@ static inline double obstacle_least_gap(const ric_obstacle *o, double lower, dou
 
 /** Whether cosines of a frequency are the same again after a time: whole turns, to rounding. */
 static inline bool frequency_repeats(double frequency, double time) {
-  double turns = frequency * time / 6.28318530717958647692;
+  double turns = frequency * time / two_pi;
   return fabs(turns - round(turns)) <= 1e-14 * fabs(turns);
 }
 
@@ -148,5 +151,24 @@ const char *system_list_held(const ric_system *s, const unsigned char *contact, 
 double hertz_force(double stiffness, double gap);
 double hertz_stiffness(double stiffness, double gap);
 double hertz_energy(double stiffness, double gap);
+
+/* Derivatives of the rates of any system along tangent vectors.
+ *
+ * Systems that know theirs give them; for all others they are differences along each vector (path_derivative.h). Steps
+ * are 2e-3 in coordinates, whose scales are taken to be one, so that both errors, of the formula and of rounding, are
+ * about 1e-13. */
+
+/** Doubles of work for a system of any model. */
+size_t system_tangent_work(const ric_system *s);
+
+/** @param work  [system_tangent_work] */
+const char *system_tangent(const ric_system *s, const unsigned char *contact, double t, const double *q,
+                           const double *u, const tangents *d, const tangents *d_rate, double *work);
+
+/** Step of differences along a direction: coordinates and time move by 2e-3, speeds by that much of the largest of
+ * them.
+ *  @param place  largest entry of the direction in coordinates and time; @param pace  the same in speeds
+ *  @param speed  largest speed at the point */
+double system_tangent_step(double place, double pace, double speed);
 
 #endif

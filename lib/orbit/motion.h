@@ -1,15 +1,25 @@
-/* The motion of an orbit over its half period, as a stream of segments: internal to the library.
- *
- * The flow runs from t = 0+ forward to T/4 and from t = (T/2)- back to T/4. An orbit is even about both ends, so this
- * is the whole of it; both contacts lie at the start of a run, where the segment begins exactly there; and what the two
- * runs differ by at T/4 measures how well the state satisfies the equations of motion. */
+/* The motion of a chain over half a period, as segments, and states of an orbit at any time. Internal to the library.
+ */
 #ifndef RICOCHET_MOTION_H
 #define RICOCHET_MOTION_H
 
 #include <stdbool.h>
 
-#include "boundary_state.h"
 #include "flow/lattice_series.h"
+
+/* What a solver finds: the state of the chain at both ends of the half period. */
+
+/** Arrays [sites], borrowed. */
+typedef struct boundary_state {
+  double *q, *v;           /* t = 0+ */
+  double *q_half, *v_half; /* t = (T/2)- */
+} boundary_state;
+
+/* The motion of an orbit over its half period, as a stream of segments.
+ *
+ * The flow runs from t = 0+ forward to T/4 and from t = (T/2)- back to T/4. An orbit is even about both ends, so this
+ * is the whole of it; both contacts lie at the start of a run, where the segment begins exactly there; and what the two
+ * runs differ by at T/4 measures how well the state satisfies the equations of motion. */
 
 /** One block of particles over one step. */
 typedef struct motion_piece {

@@ -3,11 +3,8 @@
 #define RICOCHET_SOLVER_H
 
 #include "impulse.h"
-#include "kicks.h"
 #include "motion.h"
-#include "reduced.h"
 #include "ricochet/orbit.h"
-#include "secular.h"
 
 struct ric_orbit_solver {
   ric_orbit_options options;
@@ -16,9 +13,8 @@ struct ric_orbit_solver {
   motion motion;
   double *store; /* [4][capacity] state of a cell smaller than the chain */
   size_t capacity;
-  kick_list kicks; /* for multipliers, as what follows */
-  reduced reduced;
-  secular secular;
+  void *multipliers; /* workspace of floquet/, created there when it is first needed; NULL until then */
+  void (*destroy_multipliers)(void *workspace);
 };
 
 #endif

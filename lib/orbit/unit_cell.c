@@ -1,9 +1,8 @@
+/* The part of a chain that a pattern repeats. */
 #include "unit_cell.h"
 
 #include <stdlib.h>
 #include <string.h>
-
-#include "pattern_roles.h"
 
 static bool repeats_on_ring(const ric_chain *chain, const unsigned char *roles, size_t c) {
   size_t rest = chain->particles - c;

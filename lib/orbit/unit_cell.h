@@ -1,8 +1,4 @@
-/* The smallest chain that moves like the whole one: internal to the library.
- *
- * A pattern that repeats every c particles of a ring has an orbit that does, too: it is the orbit of a ring of c. A
- * chain with free ends is half of a ring of 2 n with its mirror image, so it reduces when the mirrored pattern repeats.
- * At gamma = 0 every permutation is a symmetry, and one particle of each role stands for all. */
+/* The part of a chain that a pattern repeats. Internal to the library. */
 #ifndef RICOCHET_UNIT_CELL_H
 #define RICOCHET_UNIT_CELL_H
 
@@ -11,6 +7,17 @@
 
 #include "ricochet/chain.h"
 #include "ricochet/pattern.h"
+
+/* The roles of a pattern as one array. */
+
+/** Roles [particles], values of ric_role. */
+const unsigned char *pattern_roles(const ric_pattern *pattern);
+
+/* The smallest chain that moves like the whole one.
+ *
+ * A pattern that repeats every c particles of a ring has an orbit that does, too: it is the orbit of a ring of c. A
+ * chain with free ends is half of a ring of 2 n with its mirror image, so it reduces when the mirrored pattern repeats.
+ * At gamma = 0 every permutation is a symmetry, and one particle of each role stands for all. */
 
 /** An impact of the cell. */
 typedef struct contact {
@@ -30,6 +37,7 @@ typedef struct unit_cell {
 
 /** Sets the cell of a chain and a pattern; `cell` was zeroed once and keeps its memory from call to call. */
 ric_status unit_cell_find(unit_cell *cell, const ric_chain *chain, const ric_pattern *pattern, ric_error *error);
+
 /** The same without any reduction: the cell is the chain. */
 ric_status unit_cell_whole(unit_cell *cell, const ric_chain *chain, const ric_pattern *pattern, ric_error *error);
 void unit_cell_clear(unit_cell *cell);

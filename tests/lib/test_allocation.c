@@ -1,11 +1,11 @@
 /* Solving again allocates nothing, and what is refused memory says so. */
 #include "support.h"
 
-#include "allocation_counter.h"
-#include "approximated.h"
-#include "forced_oscillator.h"
+#include "witness/allocation_counter.h"
+#include "witness/approximated.h"
+#include "witness/forced_oscillator.h"
 #include "scenario/family_scenario.h"
-#include "solved.h"
+#include "witness/solved.h"
 
 #ifndef ALLOCATIONS_ARE_COUNTED
 

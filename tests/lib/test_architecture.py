@@ -5,21 +5,25 @@ HDF5, no YAML, no files and no output.
 """
 import re
 
-ROOMS = ["model", "flow", "impact", "orbit", "modes", "branch", "family", "grazing", "attractor"]
+ROOMS = ["numeric", "model", "flow", "impact", "orbit", "floquet", "shooting", "continuation", "family", "grazing",
+         "attractor"]
 PUBLIC = {  # public headers by room
+    "numeric": {"polynomial"},
     "model": {"chain", "resonance", "obstacle", "lattice", "mck", "user_system", "system", "normal_modes"},
-    "flow": {"polynomial", "segment", "flow"},
+    "flow": {"segment", "flow"},
     "impact": {"event", "trajectory", "saltation"},
-    "orbit": {"pattern", "orbit", "verify", "monodromy", "multipliers", "orbit_multipliers", "shooting"},
-    "modes": {"impact_modes", "ritz"},
-    "branch": {"continuation"},
+    "orbit": {"pattern", "orbit", "verify", "impact_modes"},
+    "floquet": {"monodromy", "multipliers", "orbit_multipliers", "lyapunov"},
+    "shooting": {"shooting", "ritz"},
+    "continuation": {"continuation"},
     "family": {"family"},
     "grazing": {"bypass", "grazing", "grazing_criterion", "grazing_map"},
-    "attractor": {"attractor", "cycle_window", "lyapunov", "motion_section", "motion_window"},
+    "attractor": {"attractor", "cycle_window", "motion_section", "motion_window"},
 }
 BASE = {"status", "export", "version"}
 UMBRELLA = "ricochet.h"
-FORBIDDEN_PAIRS = {("branch", "orbit"), ("branch", "modes")}  # branches know their problem through its residual only
+# Continuation knows its problem through its residual only.
+FORBIDDEN_PAIRS = {("continuation", room) for room in ROOMS[1:ROOMS.index("continuation")]}
 FORBIDDEN_HEADERS = re.compile(r"^(mpi|hdf5|yaml|omp|pthread|time|sys/time)\.h$|^H5")
 FORBIDDEN_WORDS = re.compile(
     r"\b(FILE\b|stdin\b|stdout\b|stderr\b|"

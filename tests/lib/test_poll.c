@@ -1,7 +1,7 @@
 /* The poll callback: asked during every computation, and obeyed at any moment. */
 #include "support.h"
 
-#include "solved.h"
+#include "witness/solved.h"
 
 /* Says stop from its `limit`-th call on. */
 typedef struct countdown {

@@ -1,0 +1,78 @@
+/* A family, for the files of its room. */
+#ifndef RICOCHET_INTERNAL_FAMILY_H
+#define RICOCHET_INTERNAL_FAMILY_H
+
+#include "ricochet/family.h"
+#include "shooting/shooting.h"
+
+/** Test functions: these, then the gap rates of the impacts, then the durations of the arcs between them. */
+typedef enum family_test {
+  TEST_MINUS_ONE,
+  TEST_MINUS_ONE_TOO,
+  TEST_BREAKING,
+  TEST_ENERGY,
+  TEST_TORUS,
+  TEST_THIRD,
+  TEST_FOURTH,
+  TEST_FREE_GAP,
+  TEST_OWN_GAP,
+  TEST_IMPACTS
+} family_test;
+
+struct ric_family {
+  ric_family_problem problem; /* its arrays are in `hits` */
+  ric_family_options options;
+  size_t *hits;
+  ric_shooting *shooting;
+  ric_curve *curve;
+  size_t unknowns, impacts, tests; /* impacts with gap rates of their own */
+  double at[2];                    /* parameters in the system; NaN: none yet */
+  double given;                    /* with them */
+  double *below, *above;           /* [unknowns] residuals beside a point */
+  ric_orbit orbit;                 /* of the point looked at last, and what else is known of it: */
+  ric_multipliers multipliers;
+  double *seen_z, seen_at[2]; /* [unknowns] the point at which a run has looked, and parameters; NaN: none */
+  bool judged;                /* orbit and multipliers are complete, too */
+  size_t coincide;            /* pairs of multipliers that coincide at all points of this walk */
+  double *block;
+};
+
+/** Puts parameters into the system. */
+ric_status family_set(ric_family *f, double first, double second, ric_error *error);
+
+/** Others may have changed the system: forgets what is in it. */
+void family_forget(ric_family *f);
+
+/** The orbit that a point shows is the family's own, and others have been looked at: fills it once more. */
+void family_show_again(ric_family *f, const ric_family_point *point);
+
+/** Null vectors of (J, F_p) [unknowns + 1] at z: the `count` last singular vectors. Errors handled by GSL must be off.
+ *  @returns RIC_ENUMERIC when there are more of them */
+ric_status family_null_vectors(ric_family *f, const double *z, size_t count, double *vectors, ric_error *error);
+
+/** A copy of a point's family with other impacts: its first z from a guess. */
+ric_status family_branch(const ric_family_problem *problem, const ric_family *from, const ric_family_point *point,
+                         const double *x, const double *times, double period, ric_family_junction *junction,
+                         ric_error *error);
+
+/** F and its derivatives by z and by one of the parameters at f->at. */
+ric_status family_residual(ric_family *f, const double *z, size_t by, double *F, double *J, double *F_p,
+                           ric_error *error);
+
+/** Runs along a motion and sees its orbit, its gaps and the matrix of its multipliers.
+ *  @param F, J, F_given  by the same run, as ric_shooting_residual; may be NULL */
+ric_status family_see(ric_family *f, const double *z, double *F, double *J, double *F_given, ric_error *error);
+
+/** Looks at a motion: orbit, verdict, multipliers. No run when it was seen last, nothing when it was looked at. */
+ric_status family_look(ric_family *f, const double *z, ric_error *error);
+
+/** Test functions [tests] of the motion that was looked at. */
+void family_tests(ric_family *f, const double *z, double *values);
+
+/** What a zero of a test function is; RIC_FAMILY_REGULAR: nothing. Sets kind, obstacle, time and order. */
+void family_name_zero(ric_family *f, const double *z, size_t test, ric_family_point *point);
+
+/** State [n + m] after impact `which` of the motion that was looked at. */
+const double *family_state_after(const ric_family *f, const double *z, size_t which);
+
+#endif

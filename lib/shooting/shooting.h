@@ -1,0 +1,235 @@
+/* Shooting: its options and workspace, the solution from afar, and states of a motion. Internal to the library. */
+#ifndef RICOCHET_INTERNAL_SHOOTING_H
+#define RICOCHET_INTERNAL_SHOOTING_H
+
+#include <gsl/gsl_linalg.h>
+
+#include "arcs.h"
+#include "floquet/multipliers.h"
+#include "impact/locate.h"
+#include "impact/saltation.h"
+
+/* The equations of shooting, for the files that share them. */
+
+struct ric_shooting {
+  ric_system *system; /* borrowed */
+  arc_plan arcs;
+  arc_runner runner;
+  impact_solver law;
+  tangent_jump jump;
+  bool forced; /* time enters the motion */
+  double grazing_tol;
+  bool out_of_order; /* impacts of the motion looked at last */
+  ric_poll poll;
+  size_t columns;   /* most numbers of a first state, c */
+  double *x;        /* [n + m] state along a piece */
+  double *rates;    /* [n + m] */
+  double *contact;  /* [2][m] direction of a contact and what it moves */
+  double *carried;  /* [n + m][c + 1] tangent vectors along a piece; the spectrum has room for more */
+  double *ends;     /* [n + m][c + 2] derivatives of the end of a piece: by the numbers of its first state, and by the
+                       times at which its arc begins and ends */
+  double *gap_row;  /* [c + 2] the same of a gap */
+  double *in_time;  /* [c + 2] by how much the end of the piece moves in time */
+  double *gradient; /* [n + m] of the energy at the first state */
+  double *phase_at; /* [n + m] the phase condition: <phase_along, x - phase_at> = 0 */
+  double *phase_along;
+  double *residual;                   /* [unknowns] of a solution that is looked at */
+  double *block;                      /* behind all of them */
+  struct shooting_gaps *gaps;         /* NULL until an orbit is asked for */
+  struct shooting_spectrum *spectrum; /* NULL until multipliers are asked for */
+};
+
+/** What is wanted of the end of a piece: its state; derivatives by the numbers of the equations, too; those by the
+ *  whole first state, too. */
+typedef enum piece_wish { WISH_STATE, WISH_DERIVATIVES, WISH_WHOLE } piece_wish;
+
+/** A piece of a motion that is moved along. */
+typedef struct piece_run {
+  const arc_piece *piece;
+  double begin, end;    /* times */
+  size_t first_numbers; /* of its first state */
+  piece_wish wish;
+  double *carried; /* [n + m][columns] tangent vectors: of the first numbers, of time where it moves, of the others */
+  size_t columns;
+} piece_run;
+
+/** Derivatives of the end of a piece, s->ends, in the form of tangent vectors. */
+static inline tangents shooting_ends(const ric_shooting *s, const piece_run *run) {
+  size_t columns = run->first_numbers + 2;
+  return (tangents){.columns = columns, .q = s->ends, .u = s->ends + s->arcs.coordinates * columns};
+}
+
+/** Sets s->x to the first state of a piece and says how it will run. @param wish  WISH_WHOLE with a spectrum only */
+piece_run shooting_begin(ric_shooting *s, size_t piece, const double *z, double period, piece_wish wish);
+
+/** Moves s->x to the end of the piece, and sets s->ends and what is carried.
+ *  @param watcher  may be NULL */
+ric_status shooting_move(ric_shooting *s, const piece_run *run, const arc_watch *watcher, ric_error *error);
+
+/** Column of what is carried that belongs to a row of the first state; NO_UNKNOWN where there is none. */
+size_t shooting_column(const ric_shooting *s, const piece_run *run, size_t row);
+
+/** The gap of the obstacle that is hit at the end of the piece, and its derivative in s->gap_row. */
+ric_status shooting_gap(ric_shooting *s, const piece_run *run, size_t obstacle, double *gap, ric_error *error);
+
+/** Takes s->x and s->ends through the impact at the end of the piece. */
+ric_status shooting_hit(ric_shooting *s, const piece_run *run, ric_error *error);
+
+/** Energy of a first state x [n + m], and its gradient in s->gradient; x is moved, and put back. */
+ric_status shooting_energy(ric_shooting *s, double *x, double *energy, ric_error *error);
+
+/** Sees the pieces of a motion while the equations are evaluated; functions may be NULL. */
+typedef struct shooting_observer {
+  ric_status (*begins)(const piece_run *run, void *user, ric_error *error);
+  void (*segment)(const ric_segment *piece, double end, void *user);
+  ric_status (*ends)(const piece_run *run, void *user, ric_error *error); /* at s->x, before the impact there */
+  bool whole; /* it looks at tangent vectors of the whole state */
+  void *user;
+} shooting_observer;
+
+/** As ric_shooting_residual. @param observer  may be NULL */
+ric_status shooting_evaluate(ric_shooting *shooting, const double *z, double given, double *F, double *J,
+                             double *F_given, const shooting_observer *observer, ric_error *error);
+
+/** @returns RIC_ENUMERIC unless z are numbers and the period is positive, which is set. */
+ric_status shooting_period(const ric_shooting *s, const double *z, double given, double *period, ric_error *error);
+
+/* Whether a system can have motions of the kind that was asked for.
+ *
+ * The equations of shooting take symmetries for granted: even motions those of a system that runs backwards as it runs
+ * forwards, forced ones that time repeats after the period, the others that it does not matter. Where that is wrong
+ * they have solutions that are no motions. */
+
+/** Tries a state beside the first one.
+ *  @param z  a solution
+ *  @param why  set to what does not fit, NULL when all does
+ *  @returns RIC_ECALLBACK */
+ric_status shooting_fit(ric_shooting *shooting, const double *z, double period, double tolerance, const char **why,
+                        ric_error *error);
+
+/* What one run along a motion tells, with its equations. */
+
+/** What is looked at: numbers of the orbit and its gaps; the matrix of its multipliers. */
+typedef enum look_at { LOOK_ORBIT = 1, LOOK_SPECTRUM = 2 } look_at;
+
+/** Evaluates the equations and looks at the motion by the same run.
+ *  @param what  of look_at, added up
+ *  @param F, J, F_given  as ric_shooting_residual; F may be NULL
+ *  @param orbit  with LOOK_ORBIT: impacts, state at T/2 and residual are set; s->gaps has the gaps
+ *  @returns as ric_shooting_residual, RIC_ENOMEM. */
+ric_status shooting_look(ric_shooting *s, const double *z, double given, int what, double *F, double *J,
+                         double *F_given, ric_orbit *orbit, ric_error *error);
+
+/** First state, period, energy and verdict of the orbit that shooting_look has seen last.
+ *  @param z  of the orbit, or what it was corrected to since: by less than what is seen of it is exact to */
+ric_status shooting_judge(ric_shooting *s, const double *z, double given, ric_orbit *orbit, ric_error *error);
+
+/* The smallest gaps of a motion that shooting has found.
+ *
+ * Gaps are polynomials on the segments of the arcs, their minima certified (polynomial.h). Of an obstacle that the
+ * motion does not hit the smallest value counts; of one that it hits the smallest local minimum away from the impacts,
+ * where the gap comes from and goes to zero. */
+
+/** A gap, where and when. */
+typedef struct gap_found {
+  double value; /* INFINITY: none */
+  double time;
+  size_t obstacle;
+} gap_found;
+
+typedef struct shooting_gaps {
+  ric_shooting *s; /* borrowed */
+  gap_reader reader;
+  bool *hit;             /* [obstacles] in the motion at all */
+  double *slope;         /* [obstacles] of the gap at the end of the last segment; NaN after an impact */
+  bool any_free;         /* obstacles that it does not hit */
+  double *lower, *upper; /* [n] bounds of coordinates */
+  double zero;           /* gaps below -zero are violations */
+  gap_found free, own;   /* smallest of obstacles that are not hit, and that are */
+  gap_found first;       /* the first gap below -zero, INFINITY */
+  const piece_run *run;
+  const char *trouble; /* why a gap could not be read; NULL */
+} shooting_gaps;
+
+ric_status shooting_gaps_create(ric_shooting *s, shooting_gaps **gaps, ric_error *error);
+void shooting_gaps_destroy(shooting_gaps **gaps);
+
+/** Begins a motion: nothing found yet. */
+void shooting_gaps_reset(shooting_gaps *g);
+
+/** For an observer of the motion. @param end  of the segment that counts */
+void shooting_gaps_begin(shooting_gaps *g, const piece_run *run);
+void shooting_gaps_look(shooting_gaps *g, const ric_segment *piece, double end);
+
+/** At an end of the half period of an even motion, with the state s->x there: gaps of obstacles that it hits elsewhere
+ *  are at an extremum. @param hit  which obstacle each coordinate hits there */
+ric_status shooting_gaps_turn(shooting_gaps *g, const size_t *hit, double time, ric_error *error);
+
+/** Where a motion closes with an impact: other gaps may turn around there.
+ *  @param before, after  states [n + m] */
+void shooting_gaps_close(shooting_gaps *g, const piece_run *run, const double *before, const double *after);
+
+/* Multipliers of motions that shooting has found.
+ *
+ * Even motions. Half a period G, from the middle of the impacts at t = 0 to the middle of those at T/2, is symplectic.
+ * In coordinates (s, a), states that time reversal leaves alone and those that it turns around (displacements and
+ * momenta of coordinates at rest; momenta and minus displacements of those that are hit),
+ *
+ *   G = | A  B |     M = (R G^-1 R) G,    W = 1 + 2 B^T C,
+ *       | C  D |
+ *
+ * with W the n x n block of multipliers.h. C is the Jacobian of shooting. Each of the four blocks is singular where a
+ * pair of multipliers meets: C at +1 in the family (folds, branch points), B at +1 out of it (the orbit stops being
+ * even), A and D at -1. The motion itself is in the kernel of B when time does not enter, which is taken out.
+ *
+ * All others: the eigenvalues of M, from the tangent vectors of the arcs and saltation. */
+
+typedef struct shooting_spectrum {
+  size_t size;          /* n + m */
+  double *matrix;       /* [n + m][n + m] G or M, as far as it is known */
+  double *product;      /* the same, scratch */
+  double *carried;      /* [n + m][n + m + 1] tangent vectors along a piece */
+  double *after;        /* [n + m] state after an impact */
+  double *start, *half; /* [n + m] rates (s, a) there; of even motions */
+  even_spectrum even;
+  multiplier_work work; /* of motions that are not even */
+  gsl_matrix *bordered; /* [n + 1][n + 1], or [n + m][n + m] */
+  gsl_permutation *order;
+  double *tau;            /* [2][n + 1] or [2][n + m] */
+  tangent_jump jump;      /* for n + m columns */
+  unsigned char *contact; /* [obstacles] all open, or pressed where they comply */
+  bool grazing;           /* an impact is too slow for a derivative */
+  size_t obstacle;        /* which */
+} shooting_spectrum;
+
+/** Makes s->spectrum; nothing when there is one. @returns RIC_ENOMEM */
+ric_status shooting_spectrum_reserve(ric_shooting *s, ric_error *error);
+void shooting_spectrum_destroy(shooting_spectrum **spectrum);
+
+/** For an observer of a run that carries the whole state: at the first state s->x, and at the end of every piece,
+ * before the impact there. Leaves G or M in s->spectrum->matrix; or `grazing`. */
+ric_status shooting_spectrum_begin(ric_shooting *s, ric_error *error);
+ric_status shooting_spectrum_pass(ric_shooting *s, const piece_run *run, ric_error *error);
+
+/** Takes s->spectrum->matrix through the impact at the end of a piece, by its saltation, with s->x before it; or
+ *  `grazing`. */
+ric_status shooting_spectrum_jump(ric_shooting *s, const piece_run *run, ric_error *error);
+
+/** Sets s->spectrum->matrix to the identity. */
+void shooting_spectrum_identity(shooting_spectrum *spectrum);
+
+/** The multipliers of the matrix found. @param m  initialised for n + m */
+ric_status shooting_multipliers(ric_shooting *s, const ric_multiplier_options *options, ric_multipliers *m,
+                                ric_error *error);
+
+/** Test functions, smooth along a family, with simple zeros; NaN where there are none. */
+typedef struct spectrum_tests {
+  double minus_one[2]; /* multipliers -1: determinants of A and D; of M + 1, and NaN */
+  double breaking;     /* even motions: the determinant of B, the motion taken out */
+  double energy;       /* even motions without forcing: dE/dT, as the bordered determinant of C */
+} spectrum_tests;
+
+/** Those of the matrix found. */
+spectrum_tests shooting_spectrum_tests(ric_shooting *s);
+
+#endif

@@ -1,0 +1,374 @@
+/* What a run along a solution shows: impacts, amplitude, and the verdict on the motion. */
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "numeric/largest.h"
+#include "shooting.h"
+
+/* A part of the period at which no harmonic of low order is zero. */
+static const double odd_part = 0.2371;
+
+static bool is_even(const ric_shooting *s) {
+  return s->arcs.kind == RIC_MOTION_EVEN;
+}
+
+/* The first state, with speeds that no damper leaves alone, in s->x. */
+static void set_state(ric_shooting *s, const double *z, double period) {
+  size_t n = s->arcs.coordinates;
+  (void)shooting_begin(s, 0, z, period, WISH_STATE);
+  for (size_t i = 0; i < s->arcs.speeds; i++)
+    s->x[n + i] += cos((double)(i + 1));
+}
+
+static ric_status rates_at(ric_shooting *s, double t, double *rates, ric_error *error) {
+  size_t n = s->arcs.coordinates;
+  return ric_system_rate(s->system, t, s->x, s->x + n, rates, rates + n, error);
+}
+
+static double difference(const double *a, const double *b, double sign, size_t count) {
+  double worst = 0;
+  for (size_t i = 0; i < count; i++)
+    worst = fmax(worst, fabs(a[i] - sign * b[i]));
+  return worst;
+}
+
+/* Whether gaps of users move on with a time that passes. */
+static bool gaps_move(const ric_shooting *s, double t, double later, double tolerance) {
+  const ric_system *system = s->system;
+  for (size_t j = 0; !system->obstacles && j < system->obstacle_count; j++) {
+    double gap = ric_system_gap(system, j, t, s->x), then = ric_system_gap(system, j, later, s->x);
+    if (!(fabs(then - gap) <= tolerance * (1 + fabs(gap))))
+      return true;
+  }
+  return false;
+}
+
+ric_status shooting_fit(ric_shooting *s, const double *z, double period, double tolerance, const char **why,
+                        ric_error *error) {
+  size_t n = s->arcs.coordinates, size = s->arcs.size;
+  bool timed = is_even(s) || s->arcs.kind == RIC_MOTION_FORCED;
+  double t = odd_part * period, later = t + (timed ? period : t), *rates = s->rates, *other = s->ends;
+  *why = NULL;
+  set_state(s, z, period);
+  RIC_TRY(rates_at(s, t, rates, error));
+  double most = tolerance * (1 + largest(rates, size));
+  RIC_TRY(rates_at(s, later, other, error));
+  if (!(difference(rates, other, 1, size) <= most) || gaps_move(s, t, later, tolerance))
+    *why = timed ? "the forcing does not repeat after the period" : "forces or gaps depend on time";
+  for (size_t i = n; is_even(s) && i < size; i++)
+    s->x[i] = -s->x[i];
+  if (*why || !is_even(s))
+    return RIC_OK;
+  RIC_TRY(rates_at(s, -t, other, error));
+  if (!(difference(rates + n, other + n, 1, n) <= most))
+    *why = "the system does not run backwards as it runs forwards: damping, or forcing by sines";
+  return RIC_OK;
+}
+
+/* The largest displacement of a motion over its period. */
+
+/* On the value, relative to it. */
+static const double amplitude_tol = 1e-14;
+
+/* A coordinate on a segment that counts up to `end`, with a sign, as a polynomial on [0, 1]. */
+static void read_coordinate(const ric_segment *piece, size_t i, double end, double sign, double *c) {
+  double power = sign;
+  for (int j = 0; j <= piece->degree; j++, power *= end)
+    c[j] = power * piece->coef[(size_t)j * piece->stride + i];
+}
+
+static void see_amplitude(const ric_segment *piece, double end, void *user) {
+  double *most = user, c[RIC_POLY_DEGREE + 1], at, value;
+  for (size_t i = 0; i < piece->coordinates; i++)
+    for (int sign = -1; sign <= 1; sign += 2) {
+      read_coordinate(piece, i, end, sign, c);
+      if (ric_poly_minimum(c, piece->degree, -*most, amplitude_tol * *most, &at, &value))
+        *most = fmax(*most, -value);
+    }
+}
+
+ric_status ric_shooting_amplitude(ric_shooting *s, const double *z, double given, double *amplitude, ric_error *error) {
+  const shooting_observer observer = {.segment = see_amplitude, .user = amplitude};
+  *amplitude = 0;
+  return shooting_evaluate(s, z, given, s->residual, NULL, NULL, &observer, error);
+}
+
+/* Impacts this near to half the period, over it, are there: solutions have their times to 1e-13. */
+static const double half_tol = 1e-12;
+
+/* A solution being looked at. */
+typedef struct look {
+  ric_shooting *s;
+  const double *z;
+  ric_orbit *orbit; /* NULL */
+  bool spectrum;
+  double period, origin; /* time at which the motion begins */
+  size_t impacts;        /* filled so far */
+} look;
+
+/* How much an impulse along the gap of an obstacle changes its rate; NaN for impact maps. */
+static double mobility(look *l, size_t obstacle, double t, const double *x) {
+  ric_shooting *s = l->s;
+  contact_direction d = {.g = s->contact, .w = s->contact + s->arcs.speeds};
+  double sum = 0;
+  if (!s->system->model->direction || s->system->model->direction(s->system, obstacle, t, x, &d))
+    return NAN;
+  for (size_t i = 0; i < d.count; i++)
+    sum += d.g[i] * d.w[i];
+  return sum;
+}
+
+static double time_in_period(const look *l, double time) {
+  double t = fmod(time, l->period);
+  return t < 0 ? t + l->period : t;
+}
+
+/* An impact at a state just before it, or just after it (`sign` -1): elastic ones turn the rate around. */
+static void add_impact(look *l, size_t obstacle, double time, const double *x, double sign) {
+  const ric_system *system = l->s->system;
+  ric_orbit *o = l->orbit;
+  double rate = NAN, e = system->model->restitution(system, obstacle);
+  size_t k = l->impacts++;
+  (void)system->model->gap_rate(system, obstacle, time, x, x + system->coordinates, &rate);
+  o->impact_obstacle[k] = obstacle;
+  o->impact_time[k] = time_in_period(l, time);
+  o->gap_rate[k] = sign * rate;
+  o->impulse[k] = -(1 + e) * sign * rate / mobility(l, obstacle, time, x);
+}
+
+static bool is_even_motion(const look *l) {
+  return l->s->arcs.kind == RIC_MOTION_EVEN;
+}
+
+/* Impacts at the first state of even motions. */
+static ric_status begin_orbit(look *l, const piece_run *run, ric_error *error) {
+  const ric_shooting *s = l->s;
+  l->origin = run->begin;
+  if (!is_even_motion(l))
+    return RIC_OK;
+  for (size_t i = 0; i < s->arcs.coordinates; i++)
+    if (s->arcs.at_start[i] != NO_UNKNOWN)
+      add_impact(l, s->arcs.at_start[i], 0, s->x, -1);
+  return shooting_gaps_turn(s->gaps, s->arcs.at_start, 0, error);
+}
+
+static ric_status begins(const piece_run *run, void *user, ric_error *error) {
+  look *l = user;
+  ric_shooting *s = l->s;
+  bool first = run->piece == s->arcs.pieces;
+  if (l->spectrum && first)
+    RIC_TRY(shooting_spectrum_begin(s, error));
+  if (!l->orbit)
+    return RIC_OK;
+  shooting_gaps_begin(s->gaps, run);
+  if (run->end < run->begin - s->grazing_tol * l->period) /* impacts of one time are in order either way */
+    s->out_of_order = true;
+  return first ? begin_orbit(l, run, error) : RIC_OK;
+}
+
+/* State at half the period, of motions that are not even: where a segment passes it. One that ends there has the state
+ * before an impact, and the next one has not; rounding must not leave it to neither. */
+static void keep_half(look *l, const ric_segment *piece, double end) {
+  double x = (l->origin + l->period / 2 - piece->start) / piece->length, slack = half_tol * l->period;
+  slack /= fabs(piece->length);
+  if (!(x > slack && x <= end + slack))
+    return;
+  ric_segment_state(piece, fmin(x, end), l->orbit->q_half + piece->first,
+                    l->orbit->speeds > 0 ? l->orbit->v_half + piece->first : NULL);
+}
+
+static void see_half_period(const ric_segment *piece, double end, void *user) {
+  look *l = user;
+  shooting_gaps_look(l->s->gaps, piece, end);
+  if (!is_even_motion(l))
+    keep_half(l, piece, end);
+}
+
+/* The state at half the period, and the impacts there. */
+static ric_status end_half(look *l, const piece_run *run, ric_error *error) {
+  const ric_shooting *s = l->s;
+  size_t n = s->arcs.coordinates;
+  memcpy(l->orbit->q_half, s->x, n * sizeof *s->x);
+  memcpy(l->orbit->v_half, s->x + n, n * sizeof *s->x);
+  for (size_t i = 0; i < n; i++)
+    if (s->arcs.at_half[i] != NO_UNKNOWN)
+      add_impact(l, s->arcs.at_half[i], run->end, s->x, 1);
+  return shooting_gaps_turn(s->gaps, s->arcs.at_half, run->end, error);
+}
+
+static ric_status ends(const piece_run *run, void *user, ric_error *error) {
+  look *l = user;
+  const ric_shooting *s = l->s;
+  if (l->spectrum)
+    RIC_TRY(shooting_spectrum_pass(l->s, run, error));
+  if (!l->orbit)
+    return RIC_OK;
+  if (run->piece->how == PIECE_IMPACT)
+    add_impact(l, run->piece->obstacle, run->end, s->x, 1);
+  if (run->piece->how == PIECE_IMPACT && run->piece->closes)
+    shooting_gaps_close(s->gaps, run, s->x, l->z);
+  return run->piece->how == PIECE_HALF ? end_half(l, run, error) : RIC_OK;
+}
+
+/* The second half of an even motion mirrors the impacts between. */
+static void add_mirrored(look *l) {
+  ric_orbit *o = l->orbit;
+  size_t first = l->s->arcs.start_count, count = l->s->arcs.sequence_count;
+  for (size_t i = first + count; is_even_motion(l) && i-- > first;) {
+    size_t k = l->impacts++;
+    o->impact_obstacle[k] = o->impact_obstacle[i];
+    o->impact_time[k] = time_in_period(l, l->period - o->impact_time[i]);
+    o->gap_rate[k] = o->gap_rate[i];
+    o->impulse[k] = o->impulse[i];
+  }
+}
+
+static ric_status check_room(const ric_shooting *s, const ric_orbit *orbit, ric_error *error) {
+  if (orbit->particles == s->arcs.coordinates && orbit->speeds == s->arcs.speeds &&
+      orbit->impacts == ric_shooting_impacts(s))
+    return RIC_OK;
+  return ric_fail(error, RIC_EINVAL, "orbit with room for %zu coordinates and %zu impacts, expected %zu and %zu",
+                  orbit->particles, orbit->impacts, s->arcs.coordinates, ric_shooting_impacts(s));
+}
+
+static ric_status reserve(look *l, ric_error *error) {
+  ric_shooting *s = l->s;
+  if (l->orbit)
+    RIC_TRY(check_room(s, l->orbit, error));
+  if (l->orbit && !s->gaps)
+    RIC_TRY(shooting_gaps_create(s, &s->gaps, error));
+  return l->spectrum ? shooting_spectrum_reserve(s, error) : RIC_OK;
+}
+
+static ric_status finish_orbit(look *l, const double *F, ric_error *error) {
+  const ric_shooting *s = l->s;
+  ric_orbit *o = l->orbit;
+  if (s->gaps->trouble)
+    return ric_fail(error, RIC_ECALLBACK, "a gap of the motion could not be read: %s", s->gaps->trouble);
+  add_mirrored(l);
+  o->residual = largest(F, s->arcs.unknowns);
+  return RIC_OK;
+}
+
+ric_status shooting_look(ric_shooting *s, const double *z, double given, int what, double *F, double *J,
+                         double *F_given, ric_orbit *orbit, ric_error *error) {
+  look l = {.s = s, .z = z, .orbit = what & LOOK_ORBIT ? orbit : NULL, .spectrum = what & LOOK_SPECTRUM};
+  const shooting_observer observer = {
+      .begins = begins, .segment = l.orbit ? see_half_period : NULL, .ends = ends, .whole = l.spectrum, .user = &l};
+  double *residual = F ? F : s->residual;
+  RIC_TRY(reserve(&l, error));
+  RIC_TRY(shooting_period(s, z, given, &l.period, error));
+  if (l.orbit) {
+    s->out_of_order = false;
+    shooting_gaps_reset(s->gaps);
+  }
+  RIC_TRY(shooting_evaluate(s, z, given, residual, J, F_given, &observer, error));
+  return l.orbit ? finish_orbit(&l, residual, error) : RIC_OK;
+}
+
+/* The verdict on a motion that shooting has found. */
+
+/* Residuals above it, relative to 1 + the largest unknown, are no solution's. */
+static const double residual_tol = 1e-6;
+
+/* The impact that comes in slowest. */
+static size_t weakest_impact(const ric_orbit *o) {
+  size_t weakest = 0;
+  for (size_t k = 1; k < o->impacts; k++)
+    if (o->gap_rate[k] > o->gap_rate[weakest])
+      weakest = k;
+  return weakest;
+}
+
+static double time_on_orbit(const ric_orbit *o, double time) {
+  double t = fmod(time, o->period);
+  return t < 0 ? t + o->period : t;
+}
+
+static void give_verdict(const ric_shooting *s, ric_orbit *o) {
+  const shooting_gaps *g = s->gaps;
+  double zero = s->grazing_tol;
+  const gap_found *least = g->free.value <= g->own.value ? &g->free : &g->own;
+  size_t weakest = weakest_impact(o);
+  double rate = o->impacts > 0 ? o->gap_rate[weakest] : -INFINITY;
+  char *reason = o->reason;
+  size_t room = sizeof o->reason;
+  o->outcome = RIC_INADMISSIBLE;
+  if (s->out_of_order)
+    snprintf(reason, room, "impacts are out of order");
+  else if (rate > zero)
+    snprintf(reason, room, "obstacle %zu is left at its impact, t = %.6g, with the gap rate %.3g",
+             o->impact_obstacle[weakest], o->impact_time[weakest], rate);
+  else if (least->value < -zero)
+    snprintf(reason, room, "obstacle %zu is passed at t = %.6g; the smallest gap is %.3g", g->first.obstacle,
+             time_on_orbit(o, g->first.time), least->value);
+  else
+    o->outcome = RIC_GRAZING;
+  if (o->outcome == RIC_INADMISSIBLE)
+    return;
+  if (rate >= -zero)
+    snprintf(reason, room, "obstacle %zu is hit at t = %.6g with the gap rate %.2g", o->impact_obstacle[weakest],
+             o->impact_time[weakest], rate);
+  else if (least->value <= zero)
+    snprintf(reason, room, "obstacle %zu is touched at t = %.6g, gap %.2g", least->obstacle,
+             time_on_orbit(o, least->time), least->value);
+  else {
+    o->outcome = RIC_ADMISSIBLE;
+    reason[0] = '\0';
+  }
+}
+
+static void keep_clearance(const ric_shooting *s, ric_orbit *o) {
+  const gap_found *g = &s->gaps->free;
+  bool any = g->obstacle != NO_UNKNOWN;
+  const ric_obstacle *obstacles = s->system->obstacles;
+  o->clearance = any ? g->value : NAN;
+  o->clearance_time = any ? time_on_orbit(o, g->time) : NAN;
+  o->clearance_particle = any ? (long long)(obstacles ? obstacles[g->obstacle].coordinate : g->obstacle) : -1;
+}
+
+/* Solutions of the equations that are no motions. */
+static ric_status look_for_failure(ric_shooting *s, const double *z, ric_orbit *o, ric_error *error) {
+  const arc_plan *a = &s->arcs;
+  const char *why;
+  double most = residual_tol * (1 + largest(z, a->unknowns));
+  double added = a->lambda == NO_UNKNOWN ? 0 : fabs(z[a->lambda]) * largest(s->gradient, a->size);
+  RIC_TRY(shooting_fit(s, z, o->period, residual_tol, &why, error));
+  if (!why && o->residual <= most && added <= most)
+    return RIC_OK;
+  o->outcome = RIC_FAILED;
+  if (why)
+    snprintf(o->reason, sizeof o->reason, "no motion of this kind: %s", why);
+  else if (!(o->residual <= most))
+    snprintf(o->reason, sizeof o->reason, "equations are violated by %.3g", o->residual);
+  else
+    snprintf(o->reason, sizeof o->reason, "energy is not conserved: the motion closes but for %.3g", added);
+  return RIC_OK;
+}
+
+static ric_status set_start(ric_shooting *s, const double *z, double given, ric_orbit *o, ric_error *error) {
+  size_t n = s->arcs.coordinates;
+  RIC_TRY(shooting_period(s, z, given, &o->period, error));
+  piece_run run = shooting_begin(s, 0, z, o->period, WISH_STATE);
+  memcpy(o->q, s->x, n * sizeof *s->x);
+  if (s->arcs.speeds > 0)
+    memcpy(o->v, s->x + n, s->arcs.speeds * sizeof *s->x);
+  o->energy = ric_system_energy(s->system, run.begin, o->q, o->v);
+  return RIC_OK;
+}
+
+ric_status shooting_judge(ric_shooting *s, const double *z, double given, ric_orbit *o, ric_error *error) {
+  RIC_TRY(set_start(s, z, given, o, error));
+  o->condition = NAN;
+  o->mode = -1;
+  o->harmonic = 0;
+  keep_clearance(s, o);
+  give_verdict(s, o);
+  return look_for_failure(s, z, o, error);
+}
+
+ric_status ric_shooting_orbit(ric_shooting *s, const double *z, double given, ric_orbit *orbit, ric_error *error) {
+  RIC_TRY(shooting_look(s, z, given, LOOK_ORBIT, NULL, NULL, NULL, orbit, error));
+  return shooting_judge(s, z, given, orbit, error);
+}
