@@ -176,7 +176,8 @@ ric_status family_residual(ric_family *f, const double *z, size_t by, double *F,
 }
 
 /* Points of the curve are ones at which it was evaluated: the same run looks at the motion. */
-static ric_status curve_residual(const double *u, double p, double *F, double *J, double *F_p, void *user, ric_error *error) {
+static ric_status curve_residual(const double *u, double p, double *F, double *J, double *F_p, void *user,
+                                 ric_error *error) {
   ric_family *f = user;
   bool exact = !f->problem.set;
   RIC_TRY(family_set(f, p, f->problem.second, error));

@@ -340,5 +340,5 @@ def test_a_long_branch_stops_in_time(ricochet, folder):
     text = BASE.replace("particles: 6", "particles: 100").replace("to: 0.15\n", "to: 0.15\n  step_most: 1e-5\n"
                                                                    "  points: 100000\n")
     write(folder, "s.yaml", text)
-    result = ricochet.run("s.yaml", "--max-time", "1s", cwd=folder, ranks=2, limit=20)
+    result = ricochet.run("s.yaml", "--max-time", "1s", cwd=folder, ranks=2)
     result.expect(STOPPED).expect_line("s.h5: ", "--max-time", "0 of 1 tasks", "--resume")

@@ -388,5 +388,5 @@ def test_a_task_does_not_depend_on_the_tasks_around_it(ricochet, folder):
 
 def test_a_long_task_stops_in_time(ricochet, folder):
     write(folder, "s.yaml", MAP.replace("keep: 100", "keep: 1").replace("2000", "1e13").replace("0.01", "1.5e-4"))
-    result = ricochet.run("s.yaml", "--max-time", "1s", cwd=folder, ranks=2, limit=20)
+    result = ricochet.run("s.yaml", "--max-time", "1s", cwd=folder, ranks=2)
     result.expect(STOPPED).expect_line("s.h5: ", "--max-time", "0 of 1 tasks", "--resume")

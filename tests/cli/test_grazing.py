@@ -322,7 +322,7 @@ def test_results_are_equal_for_all_ranks_and_after_stops(ricochet, folder, point
 
 def test_a_long_task_stops_in_time(ricochet, folder):
     write(folder, "s.yaml", TRACED.replace("step_most: 0.01, points: 2000", "step_most: 1e-6, points: 1000000"))
-    result = ricochet.run("s.yaml", "--max-time", "1s", cwd=folder, ranks=2, limit=20)
+    result = ricochet.run("s.yaml", "--max-time", "1s", cwd=folder, ranks=2)
     result.expect(STOPPED).expect_line("s.h5: ", "--max-time", "0 of 1 tasks", "--resume")
 
 

@@ -2,6 +2,7 @@
 
 import csv
 import io
+import re
 
 import h5py
 import numpy as np
@@ -112,6 +113,35 @@ def test_every_data_set_has_checksums_and_says_what_it_is(ricochet, folder, ship
                 assert h5py.check_string_dtype(data.dtype) is None or h5py.check_string_dtype(data.dtype).length
                 for attribute in ("units", "long_name", "source"):
                     assert attribute in data.attrs, (data.name, attribute)
+
+
+def documented(page):
+    """{name of a data set: its axes} of the tables on the schema page."""
+    found, group = {}, ""
+    for cells in (line.split(" | ") for line in page.splitlines() if line.startswith("| `/")):
+        axes = re.search(r"\[([^\]]*)\]", cells[1]) if len(cells) > 2 else None
+        for name in re.findall(r"`/?([\w/]+)`", cells[0]) if axes else []:
+            name = name if "/" in name else f"{group}/{name}"
+            group = name.split("/")[0]
+            found[name] = axes[1].split(", ")
+    return found
+
+
+def test_every_data_set_stands_on_the_schema_page_with_its_axes(shipped, source):
+    page = documented((source / "docs" / "results.md").read_text())
+    seen = set()
+    for path in shipped:
+        with h5py.File(path) as file:
+            for data in data_sets(file):
+                group, _, name = data.name[1:].rpartition("/")
+                if group in ("", "sweep"):
+                    continue
+                same = f"diagram/{name}" if group == "basin" else ""  # what basins have of diagrams is told there
+                key = data.name[1:] if data.name[1:] in page else same
+                assert key in page, data.name
+                assert data.attrs["axes"].decode().split() == page[key], data.name
+                seen.add(key)
+    assert len(seen) > 200
 
 
 def test_enums_are_read_by_name(ricochet, folder):

@@ -89,7 +89,7 @@ def test_whatever_is_damaged_show_neither_crashes_nor_hangs(ricochet, folder):
     def look(at):
         path = write(folder, f"{at}.h5", flipped(data, at, at % 8))
         for words in ([], ["--csv"]):
-            shown = ricochet("show", path.name, *words, cwd=folder, limit=30)
+            shown = ricochet("show", path.name, *words, cwd=folder)
             assert shown.code in (DONE, FILES), (at, str(shown))
         path.unlink()
 
@@ -110,7 +110,7 @@ def test_overwritten_results_are_refused_by_verify(ricochet, folder):
     for low, high in [(0, 512), (512, 4096), (4096, 8192), (len(data) // 2, len(data)), (0, len(data))]:
         path = write(folder, "zeros.h5", data[:low] + bytes(high - low) + data[high:])
         for words in COMMANDS[:2]:
-            assert ricochet("show", path.name, *words, cwd=folder, limit=30).code in (DONE, FILES)
+            assert ricochet("show", path.name, *words, cwd=folder).code in (DONE, FILES)
         ricochet("show", path.name, "--verify", cwd=folder).expect_refused(FILES, "zeros.h5: ")
 
 

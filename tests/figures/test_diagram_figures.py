@@ -2,7 +2,9 @@
 
 import numpy as np
 import pytest
-from drawing import Shelf, absent, assert_among, broken, cases, column, computed, draws, foreign, no_hdf5, refuses
+from drawing import (
+    Shelf, absent, altered, assert_among, broken, cases, column, computed, draws, foreign, no_hdf5, refuses
+)  # fmt: skip
 
 MAP = """kind: {kind}
 title: {title}
@@ -62,8 +64,18 @@ STUDIES = {
                              "{parameter: model.force, from: 6, to: 9, points: 8}"),
 }  # fmt: skip
 
+
+def some_starts_lead_nowhere(file):
+    """So that the first attractor is not the largest one."""
+    attractor = file["basin/attractor"][()]
+    attractor[np.flatnonzero(attractor == 0)[:30]] = -1
+    file["basin/attractor"][()] = attractor
+    file["basin/found_tasks"][()] = [(attractor == k).sum() for k in range(len(file["basin/found_tasks"]))]
+
+
 FAILURES = ("failed", "diverged")
 MADE = {
+    "uneven": altered("basin", some_starts_lead_nowhere, ("basin", "sweep")),
     "broken": broken("plain", "diagram", [0, 5, 6, 40, 79], FAILURES),
     "nothing": broken("plain", "diagram", range(80), FAILURES),
     "broken_beyond": broken("beyond", "diagram", [0, 7, 23], FAILURES),
@@ -205,23 +217,23 @@ def test_attractor_has_all_states(scripts, results, options, pairs):
 
 
 def test_periods_are_those_of_the_grid(scripts, results):
-    """From 1 to 16 as they are, 17 is more, 18 none."""
+    """Those up to 16 as they are, 18 is none."""
     path = results["periods"]
     (figure,) = scripts.look("plot_periods.py", path)
     period = column(path, "diagram/attractor_period")
-    assert set(column(path, "diagram/outcome")) == {"periodic", "aperiodic"}
-    wanted = np.where(period == 0, 18, np.minimum(period, 17)).reshape(40, 40).T
+    assert set(column(path, "diagram/outcome")) == {"periodic", "aperiodic"} and period.max() <= 16
+    wanted = np.where(period == 0, 18, period).reshape(40, 40).T
     assert (figure.axes[0].collections[0].get_array().reshape(40, 40) == wanted).all()
 
 
 @pytest.mark.parametrize("options", [[], ["--swap"]], ids=["straight", "swap"])
 def test_basins_are_those_of_the_grid(scripts, results, options):
-    """Attractors by falling size."""
-    path = results["basin"]
+    """Attractors by falling size, white is none."""
+    path = results["uneven"]
     (figure,) = scripts.look("plot_basin.py", path, *options)
     attractor, sizes = column(path, "basin/attractor"), column(path, "basin/found_tasks")
     rank = np.argsort(np.argsort(-sizes, kind="stable"))
-    assert len(sizes) > 1 and sizes.sum() == (attractor >= 0).sum()
+    assert sizes.tolist() == [170, 200] and (attractor < 0).sum() == 30
     wanted = np.where(attractor < 0, 7, rank[attractor]).reshape(20, 20)
     assert (figure.axes[0].collections[0].get_array().reshape(20, 20) == (wanted if options else wanted.T)).all()
     told = [text.get_text() for text in figure.axes[1].get_legend().get_texts()]

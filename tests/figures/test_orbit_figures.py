@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 from drawing import (
-    FAMILY, Shelf, absent, assert_among, beginning_of, broken, cases, column, computed, counts, draws, foreign, no_hdf5,
-    over_gamma, points, refuses, refuses_places, ring,
+    FAMILY, Shelf, absent, assert_among, beginning_of, broken, cases, column, computed, counts, draws, foreign,
+    no_hdf5, over_gamma, points, refuses, refuses_places, ring,
 )  # fmt: skip
 
 PERIODS = "  - {parameter: orbit.period, values: [6, 5.6, 5, 4.5, 4.2, 3.9, 3.4]}\n"

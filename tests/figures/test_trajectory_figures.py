@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 import synthetic_motion
 from drawing import (
-    FAMILY, Shelf, absent, altered, assert_among, beginning_of, cases, column, computed, draws, foreign, no_hdf5, refuses,
-    refuses_places,
+    FAMILY, Shelf, absent, altered, assert_among, beginning_of, cases, column, computed, draws, foreign, no_hdf5,
+    refuses, refuses_places,
 )  # fmt: skip
 from PIL import Image
 

@@ -14,7 +14,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-LIMIT = 120  # seconds until a run counts as hanging; many times what the slowest one takes
+LIMIT = 300  # seconds until a run counts as hanging; many times what the slowest takes on a busy machine
 DONE, RUN, USAGE, FILES, STOPPED = 0, 1, 2, 3, 75
 
 # Shipped grids that are made for pictures, with fewer points.

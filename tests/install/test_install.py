@@ -54,7 +54,7 @@ def test_licence_and_studies_are_there(prefix, source):
 
 
 def test_c_and_cpp_programs_build_by_the_cmake_package(prefix, consumer, folder):
-    output_of("cmake", "-S", consumer, "-B", folder, f"-DCMAKE_PREFIX_PATH={prefix}")
+    output_of("cmake", "-G", "Ninja", "-S", consumer, "-B", folder, f"-DCMAKE_PREFIX_PATH={prefix}")
     output_of("cmake", "--build", folder)
     assert output_of(folder / "consumer") == C
     assert output_of(folder / "consumer_cpp") == CPP

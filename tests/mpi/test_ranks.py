@@ -117,10 +117,11 @@ def test_a_rank_with_a_long_task_does_not_hold_up_the_others(ricochet, folder):
     """Over TCP the counter moves only while rank 0, its owner, is inside MPI. Rank 0 has a task without end and does
     nothing but poll; rank 1 takes all others. Should rank 1 have been first to take one, that proves nothing: again."""
     write(folder, "s.yaml", LONG_TASK_FIRST)
-    for _ in range(10):
-        run = ricochet.start_run("s.yaml", "--force", cwd=folder, ranks=2, mpi=OVER_TCP)
-        wait_until(lambda: tasks_in(folder / "s.h5.ckpt") == 60, "the short tasks")
-        counts = tasks_by_rank(folder / "s.h5.ckpt")
+    for i in range(10):
+        checkpoint = folder / f"{i}.h5.ckpt"
+        run = ricochet.start_run("s.yaml", "-o", f"{i}.h5", cwd=folder, ranks=2, mpi=OVER_TCP)
+        wait_until(lambda: tasks_in(checkpoint) == 60, "the short tasks")
+        counts = tasks_by_rank(checkpoint)
         run.send_signal(signal.SIGUSR1)
         ricochet.end(run).expect(STOPPED)
         if counts.get(0, 0) == 0:

@@ -134,5 +134,5 @@ def test_damaged_and_torn_checkpoints_never_reach_the_result(ricochet, folder):
 
 def test_a_stop_is_quick_also_in_a_long_trajectory(ricochet, folder):
     write(folder, "s.yaml", trajectory(100, start=speeds(100), duration=1e6, time="samples: 2"))
-    result = ricochet.run("s.yaml", "--max-time", "1s", cwd=folder, ranks=2, limit=20)
+    result = ricochet.run("s.yaml", "--max-time", "1s", cwd=folder, ranks=2)
     result.expect(STOPPED).expect_line("s.h5: ", "--max-time", "0 of 1 tasks", "--resume")

@@ -1,27 +1,46 @@
 """What holds for the project as a whole: includes of the application (mpi.h in run/ and result/ only, hdf5.h in result/
-only, yaml.h in study/ only, public headers of the library only, and between rooms only towards
-study <- task, run <- result <- command), formatting, generated pages, linked libraries, the benchmark's output."""
+only, yaml.h in study/ only, public headers of the library only, between rooms one way, and between kinds what KINDS
+says), formatting, generated pages, linked libraries, the benchmark's output."""
 
 import json
 import re
 import subprocess
 
-ALLOWED = {"study": {"study"}, "task": {"task", "study"}, "run": {"run", "study"},
-           "result": {"result", "study", "task", "run"}, "command": {"command", "study", "task", "run", "result"}}
+ORDER = ["base", "study", "model", "kind", "run", "result", "command"]
+FORBIDDEN = {("run", "model"), ("run", "kind"), ("result", "model"), ("result", "kind")}  # they know no kind of study
+KINDS = {  # what the folder of a kind uses of others
+    "family": {"trajectory"}, "orbits": {"family", "trajectory"}, "trajectory": set(),
+    "branch": {"family", "orbits"}, "grazing": {"family"}, "diagram": {"family", "grazing"}}  # fmt: skip
 HOMES = {"mpi.h": {"run", "result"}, "hdf5.h": {"result"}, "hdf5_hl.h": {"result"}, "yaml.h": {"study"}}
 
 
+def room_and_kind(path):
+    """("kind", "orbits") of kind/orbits/task.c, ("run", None) of run/lock.c."""
+    return path.parts[0], path.parts[1] if path.parts[0] == "kind" and len(path.parts) == 3 else None
+
+
+def complaint_about(here, name, there):
+    """What is wrong with an include of a file of the application; None if nothing."""
+    (room, kind), (other, other_kind) = room_and_kind(here), room_and_kind(there)
+    if ORDER.index(other) > ORDER.index(room) or (room, other) in FORBIDDEN:
+        return f"{here}: {room} may not include {name}"
+    if kind and other_kind and other_kind != kind and other_kind not in KINDS[kind]:
+        return f"{here}: the kind {kind} may not include {name}"
+    return None
+
+
 def violations(folder):
-    for path in sorted(folder.glob("*/*.[ch]")):
-        room = path.parent.name
-        for name in re.findall(r'#include\s+[<"]([^>"]+)[>"]', path.read_text(encoding="utf-8")):
-            if name in HOMES and room not in HOMES[name]:
-                yield f"{path}: {name} belongs to {sorted(HOMES[name])}"
-            other = re.match(r"(?:\.\./)?(\w+)/\w+\.h$", name)
-            if other and other[1] in ALLOWED and other[1] not in ALLOWED[room]:
-                yield f"{path}: {room} may not include {name}"
-            if re.search(r"(model|flow|orbit)/", name):
-                yield f"{path}: {name} is internal to the library"
+    for path in sorted(folder.rglob("*.[ch]")):
+        here = path.relative_to(folder)
+        for quote, name in re.findall(r'#include\s+([<"])([^>"]+)[>"]', path.read_text(encoding="utf-8")):
+            if name in HOMES and here.parts[0] not in HOMES[name]:
+                yield f"{here}: {name} belongs to {sorted(HOMES[name])}"
+            found = [p for p in (path.parent / name, folder / name) if quote == '"' and p.exists()]
+            if quote == '"' and not found:
+                yield f"{here}: {name} is not a file of the application"
+            for complaint in (complaint_about(here, name, p.resolve().relative_to(folder)) for p in found[:1]):
+                if complaint:
+                    yield complaint
 
 
 def test_includes_of_the_application_point_one_way(source):

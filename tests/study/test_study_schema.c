@@ -134,6 +134,30 @@ static void numbers_outside_a_row_do_not_fit(void **state) {
   assert_int_equal(schema_check(schema_row(KEY_ORBIT_PERIOD), 0), FIT_OUT_OF_RANGE);
 }
 
+/* Of every key, each section that it stands in: known, listed at the place where it belongs, and found with a
+ * letter too many. */
+static void sections_follow_from_the_keys(void **state) {
+  (void)state;
+  for (int key = 0; key < KEY_COUNT; key++) {
+    const char *path = schema_row((study_key)key)->path;
+    for (const char *dot = strchr(path, '.'); dot; dot = strchr(dot + 1, '.')) {
+      char section[64], outer[64] = "", near[64], names[1024];
+      snprintf(section, sizeof section, "%.*s", (int)(dot - path), path);
+      const char *inner = strrchr(section, '.');
+      snprintf(outer, sizeof outer, "%.*s", inner ? (int)(inner - section) : 0, section);
+      assert_true(schema_is_section(section));
+      schema_names(outer, names, sizeof names);
+      char listed[1100], wanted[80];
+      snprintf(listed, sizeof listed, ", %s,", names);
+      snprintf(wanted, sizeof wanted, ", %s,", inner ? inner + 1 : section);
+      assert_non_null(strstr(listed, wanted));
+      snprintf(wanted, sizeof wanted, "%s_", section);
+      schema_nearest(wanted, near, sizeof near);
+      assert_string_equal(near, section);
+    }
+  }
+}
+
 static void reference_lists_every_key(void **state) {
   (void)state;
   char *text = NULL;
@@ -170,6 +194,7 @@ int main(void) {
       cmocka_unit_test(allowed_values_are_said_in_words),
       cmocka_unit_test(open_ranges_are_said_and_checked),
       cmocka_unit_test(numbers_outside_a_row_do_not_fit),
+      cmocka_unit_test(sections_follow_from_the_keys),
       cmocka_unit_test(reference_lists_every_key),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

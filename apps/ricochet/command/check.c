@@ -4,8 +4,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "../task/kind.h"
-#include "../task/machine.h"
+#include "../kind/kind.h"
+#include "../kind/machine.h"
 #include "command.h"
 #include "restart.h"
 
@@ -34,22 +34,14 @@ static void print_plan(const study *s, const kind_plan *plan) {
 }
 
 static int check_study(const char *path, const char *const *sets, size_t set_count, message *why) {
-  char *text = NULL;
-  size_t length;
   study *s = NULL;
   kind_plan plan;
-  bool complete = false;
-  int code = study_read_file(path, &text, &length, why);
-  if (!code)
-    code = restart_resolve(path, &text, &length, sets, set_count, &complete, why);
-  if (!code)
-    code = study_parse(path, text, length, sets, complete ? 0 : set_count, &s, why);
+  int code = restart_read_study(path, sets, set_count, &s, why);
   if (!code)
     code = kind_of(s)->plan(s, &plan, why);
   if (!code)
     print_plan(s, &plan);
   study_destroy(&s);
-  free(text);
   return code;
 }
 

@@ -3,7 +3,7 @@
 #ifndef RICOCHET_APP_COMMAND_H
 #define RICOCHET_APP_COMMAND_H
 
-#include "../study/message.h"
+#include "../base/message.h"
 
 int command_run(int argc, char **argv);
 int command_check(int argc, char **argv);

@@ -5,7 +5,7 @@
 #include "../run/checkpoint.h"
 #include "../run/progress.h"
 #include "../run/stop.h"
-#include "../task/kind.h"
+#include "../kind/kind.h"
 #include "options.h"
 
 typedef struct compute_result {

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../task/kind.h"
+#include "../kind/kind.h"
 #include "command.h"
 
 static const char help[] = "usage: ricochet COMMAND ...\n"

@@ -7,7 +7,7 @@
 
 #include "../run/launcher.h"
 #include "../run/progress.h"
-#include "../study/message.h"
+#include "../base/message.h"
 
 typedef struct run_options {
   const char *study_path;

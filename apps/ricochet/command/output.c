@@ -9,7 +9,7 @@
 #include "../result/result.h"
 #include "../run/checkpoint.h"
 #include "../run/ranks.h"
-#include "../task/machine.h"
+#include "../kind/machine.h"
 
 /* File name of the study without its folder and its last extension. */
 static void stem_of(const char *path, char *stem, size_t size) {

@@ -14,8 +14,10 @@ static const double at_once = 1e-9;
 
 enum { MOST_ADDED = 16 };
 
-/* The assignments of a study, those of the command line first. */
+/* The text of a study and its assignments, those of the command line first. */
 typedef struct assignments {
+  const char *text;
+  size_t length;
   const char **all; /* [count] */
   size_t given, count;
   int failed; /* no memory */
@@ -238,9 +240,8 @@ static int read_motion(const study *s, const study_values *v, result_motion *m, 
 }
 
 /* Reads the study once more, with what it takes added to its assignments. */
-static int parse_again(const study *s, const study_values *v, const result_motion *m, assignments *a, char **text,
-                       size_t *length, message *why) {
-  study *complete = NULL;
+static int parse_again(const study *s, const study_values *v, const result_motion *m, assignments *a, study **out,
+                       message *why) {
   double *store = calloc(6 * (m->impact_count + 1), sizeof *store);
   if (store) {
     assign_state(a, m);
@@ -248,53 +249,51 @@ static int parse_again(const study *s, const study_values *v, const result_motio
     assign_period(a, s, v, m);
     assign_impacts(a, v, m, store);
   }
-  int code = store && !a->failed ? study_parse(study_name(s), *text, *length, a->all, a->count, &complete, why)
-                                 : refuse(why, EXIT_RUN, "%s: no memory for its start", study_name(s));
-  char *said = code ? NULL : strdup(study_text(complete));
-  if (!code && !said)
-    code = refuse(why, EXIT_RUN, "%s: no memory for its text", study_name(s));
-  if (said) {
-    free(*text);
-    *text = said;
-    *length = strlen(said);
-  }
-  study_destroy(&complete);
+  const int code = store && !a->failed ? study_parse(study_name(s), a->text, a->length, a->all, a->count, out, why)
+                                       : refuse(why, EXIT_RUN, "%s: no memory for its start", study_name(s));
   free(store);
   return code;
 }
 
-static int resolve(const study *s, assignments *a, char **text, size_t *length, message *why) {
+static int resolve(const study *s, assignments *a, study **out, message *why) {
   result_motion m = {0};
   study_values *v = study_values_create(s);
   int code = v ? read_motion(s, v, &m, why) : refuse(why, EXIT_RUN, "%s: no memory for its values", study_name(s));
   if (!code)
-    code = parse_again(s, v, &m, a, text, length, why);
+    code = parse_again(s, v, &m, a, out, why);
   if (v)
     study_values_destroy(&v);
   result_motion_clear(&m);
   return code;
 }
 
-int restart_resolve(const char *path, char **text, size_t *length, const char *const *sets, size_t set_count,
-                    bool *complete, message *why) {
-  study *s = NULL;
-  *complete = false;
-  int code = study_parse(path, *text, *length, sets, set_count, &s, why);
-  if (code || !study_restarts(s)) {
-    study_destroy(&s);
-    return code;
-  }
-  assignments a = {.all = calloc(set_count + MOST_ADDED + RESULT_MOST_NUMBERS, sizeof *a.all), .given = set_count};
-  if (!a.all)
-    code = refuse(why, EXIT_RUN, "%s: no memory for its start", path);
-  for (; !code && a.count < set_count; a.count++)
+/* Exchanges a study that restarts for the complete one. */
+static int complete(study **s, const char *text, size_t length, const char *const *sets, size_t set_count,
+                    message *why) {
+  study *resolved = NULL;
+  assignments a = {.text = text, .length = length, .given = set_count};
+  a.all = calloc(set_count + MOST_ADDED + RESULT_MOST_NUMBERS, sizeof *a.all);
+  for (; a.all && a.count < set_count; a.count++)
     a.all[a.count] = sets[a.count];
-  if (!code)
-    code = resolve(s, &a, text, length, why);
-  *complete = !code;
+  const int code =
+      a.all ? resolve(*s, &a, &resolved, why) : refuse(why, EXIT_RUN, "%s: no memory for its start", study_name(*s));
   for (size_t i = a.given; i < a.count; i++)
     free((char *)(uintptr_t)a.all[i]);
   free(a.all);
-  study_destroy(&s);
+  study_destroy(s);
+  *s = resolved;
+  return code;
+}
+
+int restart_read_study(const char *path, const char *const *sets, size_t set_count, study **out, message *why) {
+  char *text = NULL;
+  size_t length = 0;
+  *out = NULL;
+  int code = study_read_file(path, &text, &length, why);
+  if (!code)
+    code = study_parse(path, text, length, sets, set_count, out, why);
+  if (!code && study_restarts(*out))
+    code = complete(out, text, length, sets, set_count, why);
+  free(text);
   return code;
 }

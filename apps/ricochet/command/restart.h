@@ -2,18 +2,15 @@
 #ifndef RICOCHET_APP_RESTART_H
 #define RICOCHET_APP_RESTART_H
 
-#include <stdbool.h>
 #include <stddef.h>
 
-#include "../study/message.h"
+#include "../study/study.h"
 
-/** Replaces the text of a study that restarts by one that says itself where it starts, its `--set` values included, so
- *  that its result can be run again without the earlier one.
- *  @param path  of the study, for messages
- *  @param text  malloc'd, exchanged where the study restarts
- *  @param complete  whether it was: no `--set` values are to be applied any more
+/** Reads a study from its file, once. One that restarts is replaced by one that says itself where it starts, its
+ * `--set` values included, so that its result can be run again without the earlier one.
+ *  @param path  of the study, also for messages
+ *  @param out  NULL after a refusal
  *  @returns 0 or the exit code of a study, or of a result, that is refused */
-int restart_resolve(const char *path, char **text, size_t *length, const char *const *sets, size_t set_count,
-                    bool *complete, message *why);
+int restart_read_study(const char *path, const char *const *sets, size_t set_count, study **out, message *why);
 
 #endif

@@ -49,26 +49,21 @@ typedef struct run {
   uint64_t outcomes[64]; /* tasks by word of the outcome column */
 } run;
 
-static int read_study(const run_options *o, char **text, size_t *length, bool *complete, message *why) {
-  const int code = study_read_file(o->study_path, text, length, why);
-  return code ? code : restart_resolve(o->study_path, text, length, o->sets, o->set_count, complete, why);
-}
-
-/* Rank 0 reads the file, all ranks parse the same text. */
+/* Rank 0 reads the file, the others what it has made of it. */
 static int load(run *r, message *why) {
-  char *text = NULL;
-  size_t length = 0;
   const run_options *o = &r->options;
-  bool complete = false;
-  int code = ranks_rank() == 0 ? read_study(o, &text, &length, &complete, why) : 0;
+  const bool first = ranks_rank() == 0;
+  int code = first ? restart_read_study(o->study_path, o->sets, o->set_count, &r->study, why) : 0;
   code = ranks_agree(code, why);
-  ranks_share(&complete, sizeof complete);
+  if (code)
+    return code;
+  char *text = first ? (char *)(uintptr_t)study_text(r->study) : NULL; /* read only: rank 0 gives it away */
+  size_t length = first ? strlen(text) : 0;
+  code = ranks_share_text(&text, &length, why);
   if (!code)
-    code = ranks_share_text(&text, &length, why);
-  if (!code)
-    code = ranks_agree(study_parse(o->study_path, text, length, o->sets, complete ? 0 : o->set_count, &r->study, why),
-                       why);
-  free(text);
+    code = ranks_agree(first ? 0 : study_parse(o->study_path, text, length, NULL, 0, &r->study, why), why);
+  if (!first)
+    free(text);
   if (code)
     return code;
   r->kind = kind_of(r->study);

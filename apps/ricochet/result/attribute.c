@@ -1,5 +1,7 @@
 #include "attribute.h"
 
+#include "../base/digest.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -64,17 +66,10 @@ out:
   return hdf5_close(at, type, code);
 }
 
-uint64_t attribute_digest(const void *bytes, size_t count) {
-  uint64_t digest = 14695981039346656037u;
-  for (const unsigned char *b = bytes; count > 0; b++, count--)
-    digest = (digest ^ *b) * 1099511628211u;
-  return digest;
-}
-
 /* Writes into `other` the name of the attribute that holds the checksum of `name`, into `sum` that of `text`. */
 static void checksum_of(const char *name, const char *text, char other[64], char sum[17]) {
   snprintf(other, 64, "%s_checksum", name);
-  snprintf(sum, 17, "%016llx", (unsigned long long)attribute_digest(text, strlen(text)));
+  snprintf(sum, 17, "%016llx", (unsigned long long)digest_bytes(0, text, strlen(text)));
 }
 
 int attribute_put_checked_text(const place *at, hid_t object, const char *name, const char *text) {

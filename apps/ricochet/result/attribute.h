@@ -25,9 +25,6 @@ int attribute_put_list(const place *at, hid_t object, const char *name, hid_t fi
 /** The file's type for text of `bytes` bytes, NUL padded, closed by the caller; negative on failure. */
 hid_t attribute_text_type(size_t bytes, H5T_cset_t set);
 
-/** FNV-1a, 64 bits: what this room uses where HDF5 has no checksum of its own. */
-uint64_t attribute_digest(const void *bytes, size_t count);
-
 /* Reading. @returns 0 or EXIT_FILES. */
 
 /** @param text  set to malloc'd text with a terminating 0; the caller frees; NULL on failure */

@@ -1,4 +1,4 @@
-#include "diagram_card.h"
+#include "cards.h"
 
 #include <inttypes.h>
 #include <stdio.h>

@@ -1,4 +1,4 @@
-#include "grazing_card.h"
+#include "cards.h"
 
 #include <inttypes.h>
 #include <math.h>

@@ -9,7 +9,7 @@
 #include <hdf5.h>
 #include <hdf5_hl.h>
 
-#include "../study/message.h"
+#include "../base/message.h"
 
 /** The file that messages name, and where they go. */
 typedef struct place {

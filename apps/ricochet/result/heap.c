@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../base/digest.h"
 #include "attribute.h"
 
 static const char attribute_name[] = "heap_checksums";
@@ -14,7 +15,7 @@ typedef struct heap {
 } heap;
 
 static int64_t digest_of(const unsigned char *bytes, size_t count) {
-  return (int64_t)attribute_digest(bytes, count);
+  return (int64_t)digest_bytes(0, bytes, count);
 }
 
 /* Signature, version 1, three zero bytes, size of the whole collection. Data that happen to look like it do no harm:

@@ -6,7 +6,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "../study/message.h"
+#include "../base/message.h"
 
 typedef struct result_impact {
   double time;

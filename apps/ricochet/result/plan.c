@@ -10,8 +10,10 @@ static int read_sweep_rows(void *user, uint64_t first, uint64_t count, unsigned 
   const table *t = &p->sweep;
   (void)why;
   for (uint64_t i = 0; i < count; i++)
-    for (size_t k = 0; k < t->column_count; k++)
-      row_put_number(rows + i * t->row_bytes, &t->columns[k], study_sweep_value(p->header->study, k, first + i));
+    for (size_t k = 0; k < t->column_count; k++) {
+      const double value = study_sweep_value(p->header->study, k, first + i);
+      memcpy(rows + i * t->row_bytes + t->columns[k].offset, &value, sizeof value);
+    }
   return 0;
 }
 

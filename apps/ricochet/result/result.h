@@ -14,9 +14,9 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "../study/message.h"
+#include "../base/message.h"
 #include "../study/study.h"
-#include "../task/table.h"
+#include "../base/table.h"
 
 #define RESULT_CREATOR "ricochet" /* root attribute `creator`: the file is ours */
 enum { RESULT_SCHEMA_VERSION = 1 };

@@ -7,8 +7,7 @@
 #include <string.h>
 
 #include "attribute.h"
-#include "diagram_card.h"
-#include "grazing_card.h"
+#include "cards.h"
 #include "reader.h"
 #include "text_out.h"
 

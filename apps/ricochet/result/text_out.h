@@ -2,7 +2,7 @@
 #ifndef RICOCHET_APP_TEXT_OUT_H
 #define RICOCHET_APP_TEXT_OUT_H
 
-#include "../study/message.h"
+#include "../base/message.h"
 
 /** Flushes standard output. @returns `code`, or EXIT_FILES when that is 0 and something could not be printed. */
 int text_out_finish(int code, message *why);

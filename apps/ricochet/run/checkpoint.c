@@ -12,14 +12,6 @@
 
 #include "checkpoint_files.h"
 
-uint64_t digest_bytes(uint64_t seed, const void *bytes, size_t size) {
-  const unsigned char *byte = bytes;
-  uint64_t digest = seed ? seed : UINT64_C(0xcbf29ce484222325);
-  for (size_t i = 0; i < size; i++)
-    digest = (digest ^ byte[i]) * UINT64_C(0x100000001b3);
-  return digest;
-}
-
 uint64_t part_header_check(const part_header *header) {
   return digest_bytes(0, header, offsetof(part_header, check));
 }

@@ -15,7 +15,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "../study/message.h"
+#include "../base/digest.h"
+#include "../base/message.h"
 
 typedef struct checkpoint checkpoint;
 
@@ -35,9 +36,6 @@ typedef struct checkpoint_tails {
   const uint64_t *counts;                     /* [tasks][tails] entries of each task */
   const void *entries[CHECKPOINT_MOST_TAILS]; /* of each tail, those of one task after another */
 } checkpoint_tails;
-
-/** FNV-1a, 64 bits, continued from `seed` (0 to begin). Any single changed byte changes it. About 1 GB/s. */
-uint64_t digest_bytes(uint64_t seed, const void *bytes, size_t size);
 
 /** Opens the checkpoint in `folder` (which exists; copied) and reads the records of every file there, verifying all of
  *  their bytes. A file without a whole header counts as empty.

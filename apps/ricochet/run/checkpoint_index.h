@@ -5,7 +5,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "../study/message.h"
+#include "../base/message.h"
 
 /** Tasks [first, first + count), to be found in the record at `offset` of file number `part`. */
 typedef struct index_range {

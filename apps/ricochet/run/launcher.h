@@ -8,7 +8,7 @@
 
 #include <stdbool.h>
 
-#include "../study/message.h"
+#include "../base/message.h"
 
 typedef enum launcher_mode {
   LAUNCHER_AUTO, /* MPI if a launcher started the process */

@@ -6,7 +6,7 @@
 #ifndef RICOCHET_APP_LOCK_H
 #define RICOCHET_APP_LOCK_H
 
-#include "../study/message.h"
+#include "../base/message.h"
 
 typedef struct lock lock;
 

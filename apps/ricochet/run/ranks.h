@@ -10,7 +10,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "../study/message.h"
+#include "../base/message.h"
 
 /** Starts MPI. Without this call the process is alone. */
 void ranks_start(int *argc, char ***argv);
@@ -29,7 +29,7 @@ int ranks_agree(int code, message *why);
 /** Gives rank 0's value to all. */
 void ranks_share(void *bytes, size_t size);
 
-/** Gives rank 0's text to all: malloc'd on the other ranks, freed by the caller everywhere. */
+/** Gives rank 0's text to all: malloc'd on the other ranks, which free it. */
 int ranks_share_text(char **text, size_t *length, message *why);
 
 double ranks_max(double value);

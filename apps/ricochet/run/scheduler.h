@@ -14,7 +14,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "../study/message.h"
+#include "../base/message.h"
 
 typedef struct scheduler scheduler;
 

@@ -1,4 +1,4 @@
-#include "assignment.h"
+#include "document.h"
 
 #include <stdio.h>
 #include <stdlib.h>

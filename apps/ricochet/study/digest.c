@@ -1,28 +1,20 @@
 #include <string.h>
 
+#include "../base/digest.h"
 #include "parts.h"
-
-/* FNV-1a, 64 bits: https://datatracker.ietf.org/doc/html/draft-eastlake-fnv */
-static const uint64_t fnv_basis = 0xcbf29ce484222325u, fnv_prime = 0x100000001b3u;
-
-static void add_bytes(uint64_t *digest, const void *bytes, size_t count) {
-  const unsigned char *b = bytes;
-  for (size_t i = 0; i < count; i++)
-    *digest = (*digest ^ b[i]) * fnv_prime;
-}
 
 /* Least byte first, so that the digest is the same on every machine. */
 static void add_integer(uint64_t *digest, uint64_t value) {
   unsigned char bytes[8];
   for (int i = 0; i < 8; i++)
     bytes[i] = (unsigned char)(value >> (8 * i));
-  add_bytes(digest, bytes, sizeof bytes);
+  *digest = digest_bytes(*digest, bytes, sizeof bytes);
 }
 
 /* Lengths come first: no two different texts or lists run together to the same bytes. */
 static void add_text(uint64_t *digest, const char *text) {
   add_integer(digest, strlen(text));
-  add_bytes(digest, text, strlen(text));
+  *digest = digest_bytes(*digest, text, strlen(text));
 }
 
 static void add_numbers(uint64_t *digest, const double *numbers, size_t count) {
@@ -44,7 +36,7 @@ static void add_value(uint64_t *digest, const typed_value *value) {
 }
 
 uint64_t study_compute_digest(const study *s) {
-  uint64_t digest = fnv_basis;
+  uint64_t digest = 0;
   for (int key = 0; key < KEY_COUNT; key++) {
     add_text(&digest, schema_row((study_key)key)->path);
     add_value(&digest, &s->values[key]);

@@ -4,8 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "guard.h"
-
 yaml_node_t *document_node(const document *d, int node) {
   return d->tree.nodes.start + (node - 1);
 }

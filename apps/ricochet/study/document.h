@@ -57,4 +57,34 @@ void document_show(const document *d, int node, char *text, size_t size);
 int document_refuse(const document *d, int node, message *why, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 
+/* The document tree written out as YAML again: what a study with `--set` assignments really ran. */
+
+/** Writes the tree as YAML text that reads back as the same values. Comments are gone, the layout is libyaml's.
+ *  @param text  set to malloc'd text with a terminating 0; the caller frees
+ *  @returns 0, or EXIT_RUN when out of memory. */
+int document_emit(const document *d, char **text, message *why);
+
+/* `--set path=value`: an edit of the document tree, made before anything is validated, so that it meets the same
+ * checks, and the same messages, as a line of the file.
+ *
+ * The path is names joined by dots, list elements by index: `model.gamma`, `sweep[0].points`. The value is YAML, read
+ * through the same guard as a file. Missing keys and sections are created; list elements must exist. */
+
+/** @param assignment  "path=value", copied. @returns 0, EXIT_USAGE, or EXIT_RUN when out of memory. */
+int document_assign(document *d, const char *assignment, message *why);
+
+/* What a text must pass before its document tree is built.
+ *
+ * libyaml's tree does not show a second document, resolves aliases (a few lines can stand for gigabytes), and grows
+ * slow and deep on nested brackets. One pass over the parser's events, which come as they are read, refuses all of it
+ * at the first offending line: so the tree is built from harmless text only, and code may recurse over it. */
+
+/** Refuses more than STUDY_MAX_BYTES, text that is not UTF-8 or contains a NUL, that is not YAML, an empty text, a
+ *  second document, anchors, aliases, tags, and nesting deeper than STUDY_MAX_DEPTH.
+ *  @returns 0, EXIT_USAGE, or EXIT_RUN when out of memory. */
+int guard_text(const source *from, const char *text, size_t length, message *why);
+
+/** Starts a parser on UTF-8 text, which it borrows: left to guess, libyaml also takes UTF-16. False: out of memory. */
+bool guard_start_parser(yaml_parser_t *parser, const char *text, size_t length);
+
 #endif

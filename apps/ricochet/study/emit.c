@@ -1,4 +1,4 @@
-#include "emit.h"
+#include "document.h"
 
 #include <stdlib.h>
 #include <string.h>

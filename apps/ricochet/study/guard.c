@@ -1,4 +1,4 @@
-#include "guard.h"
+#include "document.h"
 
 #include <string.h>
 

@@ -1,6 +1,7 @@
 /* The known name nearest to a mistyped one. */
 #include "schema.h"
 
+#include <stdio.h>
 #include <string.h>
 
 enum { LONGEST_NAME = 63 }; /* longer ones are near to no name of the table */
@@ -40,7 +41,7 @@ static size_t path_distance(const char *path, const char *known) {
 
 typedef struct search {
   const char *path;
-  const char *best;
+  char best[LONGEST_NAME + 1];
   size_t distance; /* twice as many as letters */
 } search;
 
@@ -53,15 +54,21 @@ static bool in_one_section(const char *a, const char *b) {
 static void consider(search *s, const char *known) {
   const size_t distance = 2 * path_distance(s->path, known) + !in_one_section(s->path, known);
   if (distance < s->distance) {
-    s->best = known;
+    snprintf(s->best, sizeof s->best, "%s", known);
     s->distance = distance;
   }
+}
+
+static void consider_section(const char *name, size_t length, void *user) {
+  char known[LONGEST_NAME + 1];
+  snprintf(known, sizeof known, "%.*s", (int)length, name);
+  consider(user, known);
 }
 
 /* Up to a third of the name may be wrong: beyond, a suggestion is a guess. */
 static search begin(const char *path) {
   const size_t third = strlen(last_name(path)) / 3;
-  return (search){.path = path, .best = "", .distance = 2 * (1 + (third > 1 ? third : 1))};
+  return (search){.path = path, .distance = 2 * (1 + (third > 1 ? third : 1))};
 }
 
 static void finish(const search *s, char *near, size_t size) {
@@ -75,15 +82,7 @@ void schema_nearest(const char *path, char *near, size_t size) {
       consider(&s, schema_row((study_key)key)->path);
     for (int key = 0; key < SWEEP_KEY_COUNT; key++)
       consider(&s, schema_sweep_row((sweep_key)key)->path);
-    consider(&s, "model");
-    consider(&s, "orbit");
-    consider(&s, "start");
-    consider(&s, "time");
-    consider(&s, "branch");
-    consider(&s, "branch.trace");
-    consider(&s, "restart");
-    consider(&s, "grazing");
-    consider(&s, "sweep");
+    schema_sections(consider_section, &s);
   }
   finish(&s, near, size);
 }

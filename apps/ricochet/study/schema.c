@@ -20,6 +20,27 @@ bool schema_is_section(const char *name) {
   return false;
 }
 
+/* Whether a row before `key` stands in the section of this name. */
+static bool section_is_known(study_key key, const char *name, size_t length) {
+  for (int earlier = 0; earlier < (int)key; earlier++) {
+    const char *path = schema_row((study_key)earlier)->path;
+    if (strncmp(path, name, length) == 0 && path[length] == '.')
+      return true;
+  }
+  return false;
+}
+
+void schema_sections(void (*see)(const char *name, size_t length, void *user), void *user) {
+  static const char sweep[] = "sweep";
+  for (int key = 0; key < KEY_COUNT; key++) {
+    const char *path = schema_row((study_key)key)->path;
+    for (const char *dot = strchr(path, '.'); dot; dot = strchr(dot + 1, '.'))
+      if (!section_is_known((study_key)key, path, (size_t)(dot - path)))
+        see(path, (size_t)(dot - path), user);
+  }
+  see(sweep, sizeof sweep - 1, user);
+}
+
 long schema_find_word(const char *word, size_t length, const char *words) {
   for (long place = 0; words && *words; place++) {
     const size_t next = strcspn(words, "|");

@@ -185,6 +185,9 @@ study_key schema_find(const char *path);
  *  `restart`, `grazing`, `iterate`. */
 bool schema_is_section(const char *name);
 
+/** Sees every section once, in the order of the table, `sweep` last. @param name  not ended by a zero */
+void schema_sections(void (*see)(const char *name, size_t length, void *user), void *user);
+
 /** Writes the known key nearest to `path` into `near`, or "" when none is near enough to suggest. Nearness is the edit
  *  distance, swapped neighbours counting once, of the whole paths or of their last names: `model.gama` finds
  *  `model.gamma`, and so does `gamma`. Sections and the keys of sweep entries (`sweep.from`) are known too.

@@ -6,7 +6,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "message.h"
+#include "../base/message.h"
 
 typedef struct source {
   const char *name; /* borrowed */

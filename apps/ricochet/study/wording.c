@@ -77,24 +77,27 @@ void schema_allowed(const schema_entry *entry, char *text, size_t size) {
   append_range(entry, text, size);
 }
 
-static void append_name(const char *section, const char *path, char *text, size_t size) {
-  const size_t length = strlen(section);
-  const char *name = length ? path + length + 1 : path;
-  const bool inside = length ? strncmp(path, section, length) == 0 && path[length] == '.' : !strchr(path, '.');
-  if (inside && !strchr(name, '.'))
-    append(text, size, "%s%s", *text ? ", " : "", name);
+/* The names in a section, as a list in words. */
+typedef struct name_list {
+  const char *section;
+  char *text;
+  size_t size;
+} name_list;
+
+static void append_name(const char *path, size_t path_length, void *user) {
+  const name_list *list = user;
+  const size_t length = strlen(list->section), skip = length ? length + 1 : 0;
+  const bool inside = !length || (strncmp(path, list->section, length) == 0 && path[length] == '.');
+  if (inside && path_length > skip && !memchr(path + skip, '.', path_length - skip))
+    append(list->text, list->size, "%s%.*s", *list->text ? ", " : "", (int)(path_length - skip), path + skip);
 }
 
 void schema_names(const char *section, char *text, size_t size) {
+  name_list list = {section, text, size};
   *text = 0;
   for (int key = 0; key < KEY_COUNT; key++)
-    append_name(section, schema_row((study_key)key)->path, text, size);
+    append_name(schema_row((study_key)key)->path, strlen(schema_row((study_key)key)->path), &list);
   for (int key = 0; key < SWEEP_KEY_COUNT; key++)
-    append_name(section, schema_sweep_row((sweep_key)key)->path, text, size);
-  append_name(section, "model", text, size);
-  append_name(section, "orbit", text, size);
-  append_name(section, "start", text, size);
-  append_name(section, "time", text, size);
-  append_name(section, "sweep", text, size);
-  append_name(section, "branch.trace", text, size);
+    append_name(schema_sweep_row((sweep_key)key)->path, strlen(schema_sweep_row((sweep_key)key)->path), &list);
+  schema_sections(append_name, &list);
 }

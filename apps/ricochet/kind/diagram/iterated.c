@@ -1,0 +1,343 @@
+#include "iterated.h"
+
+#include <math.h>
+#include <ricochet/ricochet.h>
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#include "model/map_model.h"
+
+/* --- the fastest variant of the kernel of maps --- */
+
+enum { VALUES = 64, ITERATES = 400, REPEATS = 3 };
+
+static double seconds(void) {
+  struct timespec now;
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+/* A map with windows and chaos, all of whose coefficients count. */
+static ric_status make_map(ric_grazing_map *map, size_t size) {
+  RIC_TRY(ric_grazing_map_init(map, size, NULL));
+  for (size_t i = 0; i < size; i++) {
+    map->L[i * size + i] = 0.5 / (1 + (double)i);
+    map->eta[i] = i == 0;
+    map->xi[i] = 1;
+    map->kappa[i] = 3;
+  }
+  return RIC_OK;
+}
+
+/* Storage of the values that are run. */
+typedef struct trial {
+  ric_grazing_map map;
+  const ric_grazing_map *maps[VALUES];
+  double d[VALUES];
+  ric_attractor attractors[VALUES];
+  double *numbers; /* [VALUES][size + exponents] */
+} trial;
+
+static void reset(trial *t, size_t size, size_t exponents) {
+  for (size_t i = 0; i < VALUES; i++) {
+    double *at = t->numbers + i * (size + exponents);
+    for (size_t k = 0; k < size; k++)
+      at[k] = 0;
+    t->maps[i] = &t->map;
+    t->d[i] = 1e-4 * exp(0.1 * (double)i);
+    t->attractors[i] = (ric_attractor){.z = at, .exponents = at + size};
+  }
+}
+
+/* The shortest of several runs; INFINITY where there is none. */
+static double time_of(trial *t, ric_map_lanes lanes, const ric_attractor_options *o, size_t size) {
+  ric_map_runner *runner = NULL;
+  double best = INFINITY;
+  if (ric_map_runner_create(size, o, lanes, &runner, NULL) != RIC_OK)
+    return INFINITY;
+  for (int repeat = 0; repeat < REPEATS; repeat++) {
+    reset(t, size, o->exponents);
+    const double began = seconds();
+    if (ric_map_runner_run(runner, VALUES, t->maps, t->d, t->attractors, NULL) == RIC_OK)
+      best = fmin(best, seconds() - began);
+  }
+  ric_map_runner_destroy(&runner);
+  return best;
+}
+
+/* The variant that is fastest on this processor, measured in a few milliseconds: the widest need not be. */
+static ric_map_lanes fastest_lanes(size_t size, size_t exponents) {
+  trial t = {0};
+  ric_attractor_options o = ric_attractor_options_default();
+  ric_map_lanes fastest = RIC_MAP_LANES_ONE;
+  double best = INFINITY;
+  o.transient = o.measure = ITERATES / 2;
+  o.keep = 0;
+  o.exponents = exponents;
+  o.period_limit = 1;
+  t.numbers = calloc(VALUES * (size + exponents), sizeof *t.numbers);
+  if (t.numbers && make_map(&t.map, size) == RIC_OK)
+    for (int lanes = 0; lanes < RIC_MAP_LANES_KINDS; lanes++) {
+      const double taken =
+          ric_map_lanes_available((ric_map_lanes)lanes) ? time_of(&t, (ric_map_lanes)lanes, &o, size) : INFINITY;
+      if (taken < best) {
+        best = taken;
+        fastest = (ric_map_lanes)lanes;
+      }
+    }
+  ric_grazing_map_clear(&t.map);
+  free(t.numbers);
+  return fastest;
+}
+
+enum {
+  MAP_SLOTS = 64,       /* several vectors of values, so that one does not wait for another */
+  MAP_LANES = 33,       /* that keep their states for the period, in the widest variant, and one map's by itself */
+  MOTION_BYTES = 65536, /* of a trajectory with its flow and tangent vectors, per number of the state, roughly */
+  WAIT_PERIODS = 100    /* of the force without an impact of the section, at least, before it is not met any more */
+};
+
+size_t iterated_slots(const study *s) {
+  return study_is_map(s) ? MAP_SLOTS : 1;
+}
+
+/* Iterates that decide on the longest period of all tasks. */
+static double deciding(const study *s, const study_values *v) {
+  double limit = value_number(v, KEY_ITERATE_PERIOD_LIMIT, 0);
+  for (size_t i = 0; i < study_sweeps(s); i++) {
+    const study_sweep *sweep = study_sweep_at(s, i);
+    for (size_t k = 0; sweep->key == KEY_ITERATE_PERIOD_LIMIT && k < sweep->points; k++)
+      limit = fmax(limit, sweep->values[k]);
+  }
+  return 2 * limit + 2;
+}
+
+double iterated_bytes(const study *s, const study_values *v) {
+  const double size = (double)study_state_size(s), states = 8 * size * deciding(s, v);
+  return study_is_map(s) ? MAP_SLOTS * 8 * (2 * size * (size + 8)) + MAP_LANES * states
+                         : size * (MOTION_BYTES + LATTICE_MODEL_BYTES) + states;
+}
+
+/* --- storage ------------------------------------------------------------------------------------------------------ */
+
+static bool allocate(iterated *it) {
+  if (!study_is_map(it->study))
+    return lattice_model_init(&it->model, it->values) == 0;
+  it->maps = calloc(it->slots, sizeof *it->maps);
+  return it->maps != NULL;
+}
+
+int iterated_init(iterated *it, const study *s, ric_poll poll, message *why) {
+  *it = (iterated){.study = s, .poll = poll, .size = study_state_size(s), .slots = iterated_slots(s)};
+  it->values = study_values_create(s);
+  if (!it->values || !allocate(it))
+    return refuse(why, EXIT_RUN, "%s: no memory for a task", study_name(s));
+  if (study_is_beyond(s)) {
+    it->beyond = calloc(1, sizeof *it->beyond);
+    return it->beyond ? beyond_init(it->beyond, s, poll, why)
+                      : refuse(why, EXIT_RUN, "%s: no memory for a task", study_name(s));
+  }
+  if (it->maps)
+    it->lanes = fastest_lanes(it->size, value_flag(it->values, KEY_ITERATE_LYAPUNOV)
+                                            ? (size_t)value_number(it->values, KEY_ITERATE_EXPONENTS, 0)
+                                            : 0);
+  return 0;
+}
+
+void iterated_clear(iterated *it) {
+  for (size_t i = 0; it->maps && i < it->slots; i++)
+    ric_grazing_map_clear(&it->maps[i].map);
+  free(it->maps);
+  ric_map_runner_destroy(&it->runner);
+  lattice_model_clear(&it->model);
+  if (it->beyond)
+    beyond_clear(it->beyond);
+  free(it->beyond);
+  study_values_destroy(&it->values);
+  *it = (iterated){0};
+}
+
+/* --- a task ------------------------------------------------------------------------------------------------------- */
+
+static size_t kept_of(const iterated *it) {
+  const bool is_diagram = strcmp(study_kind(it->study), "diagram") == 0;
+  return is_diagram ? (size_t)value_number(it->values, KEY_ITERATE_KEEP, 0) : 0;
+}
+
+size_t iterated_measured(const iterated *it) {
+  const double measure = value_number(it->values, KEY_ITERATE_MEASURE, 0);
+  const size_t keep = kept_of(it);
+  return measure > 0 ? (size_t)measure : keep > 0 ? keep : ric_attractor_options_default().measure;
+}
+
+static ric_attractor_options options_of(const iterated *it) {
+  const study_values *v = it->values;
+  ric_attractor_options o = ric_attractor_options_default();
+  o.transient = (size_t)value_number(v, KEY_ITERATE_TRANSIENT, 0);
+  o.keep = kept_of(it);
+  o.measure = iterated_measured(it);
+  o.observe = study_observed(it->study);
+  o.exponents = value_flag(v, KEY_ITERATE_LYAPUNOV) ? (size_t)value_number(v, KEY_ITERATE_EXPONENTS, 0) : 0;
+  o.period_limit = (size_t)value_number(v, KEY_ITERATE_PERIOD_LIMIT, 0);
+  o.period_tol = value_number(v, KEY_ITERATE_PERIOD_TOL, 0);
+  o.poll = it->poll;
+  return o;
+}
+
+static void take_map(iterated *it, iterated_map *slot, double *z) {
+  const study_values *v = it->values;
+  slot->refused = (ric_error){0};
+  slot->options = options_of(it);
+  slot->d = value_number(v, KEY_MODEL_D, 0);
+  if (map_model_read(&slot->map, v, &slot->refused) == RIC_OK)
+    ric_attractor_options_check(&slot->options, it->size, &slot->refused);
+  for (size_t i = 0; i < it->size; i++)
+    z[i] = value_number(v, KEY_ITERATE_START, value_is_list(v, KEY_ITERATE_START) ? i : 0);
+}
+
+/* The obstacle that a particle hits: its floor, or its wall where it has no floor. */
+static size_t obstacle_of(const lattice_model *m, double particle) {
+  if (particle == -INFINITY)
+    return SIZE_MAX;
+  const size_t floor = lattice_model_obstacle(m, (size_t)particle, +1);
+  return floor != SIZE_MAX ? floor : lattice_model_obstacle(m, (size_t)particle, -1);
+}
+
+double iterated_period(const lattice_model *model) {
+  static const double pi = 3.14159265358979323846;
+  return model->lattice.frequency > 0 ? 2 * pi / model->lattice.frequency : 0;
+}
+
+ric_status iterated_read_model(iterated *it, ric_error *error) {
+  const ric_status status = it->beyond ? beyond_find(it->beyond, it->values, error) : RIC_OK;
+  if (it->beyond && status == RIC_OK)
+    study_values_follow(it->values, beyond_parameter(it->beyond, it->values));
+  lattice_model_read(&it->model, it->values);
+  return status;
+}
+
+static void take_motion(iterated *it, double *z) {
+  const study_values *v = it->values;
+  const size_t n = it->model.lattice.particles;
+  const double tolerance = value_number(v, KEY_ITERATE_TOLERANCE, 0);
+  it->refused = (ric_error){0};
+  iterated_read_model(it, &it->refused);
+  it->options = options_of(it);
+  it->section = ric_motion_section_options_default(iterated_period(&it->model));
+  it->section.kind =
+      strcmp(value_word(v, KEY_ITERATE_SECTION), "impact") == 0 ? RIC_SECTION_IMPACT : RIC_SECTION_STROBE;
+  it->section.phase = value_number(v, KEY_ITERATE_PHASE, 0);
+  it->section.wait = fmax(it->section.wait, WAIT_PERIODS * it->section.period);
+  it->section.obstacle = obstacle_of(&it->model, value_number(v, KEY_ITERATE_PARTICLE, 0));
+  it->section.trajectory.flow.tolerance = tolerance > 0 ? tolerance : 0; /* null reads as minus infinity */
+  it->section.trajectory.poll = it->poll;
+  for (size_t i = 0; i < n; i++) {
+    z[i] = value_of_particle(v, KEY_START_Q, i);
+    z[n + i] = value_of_particle(v, KEY_START_V, i);
+  }
+  if (it->size > 2 * n) /* the time of the start */
+    z[2 * n] = it->section.phase * it->section.period;
+}
+
+void iterated_take(iterated *it, size_t slot, double *z) {
+  if (it->maps)
+    take_map(it, &it->maps[slot], z);
+  else
+    take_motion(it, z);
+}
+
+/* --- a run -------------------------------------------------------------------------------------------------------- */
+
+/* What the library refuses to run has failed. */
+static void fail(const iterated *it, ric_attractor *a, const ric_error *error) {
+  const ric_attractor_options *o = it->maps ? &it->maps[0].options : &it->options;
+  a->kind = RIC_ATTRACTOR_FAILED;
+  a->period = a->iterates = 0;
+  a->impacts = NAN;
+  for (size_t i = 0; a->values && i < o->keep; i++)
+    a->values[i] = NAN;
+  for (size_t i = 0; a->states && i < o->keep * it->size; i++)
+    a->states[i] = NAN;
+  for (size_t i = 0; i < o->exponents; i++)
+    a->exponents[i] = NAN;
+  for (size_t i = 0; a->lowest && i < it->size; i++)
+    a->lowest[i] = NAN;
+  snprintf(a->reason, sizeof a->reason, "%.*s", (int)sizeof a->reason - 1, error->message);
+}
+
+static bool is_same(const ric_attractor_options *a, const ric_attractor_options *b) {
+  return a->transient == b->transient && a->measure == b->measure && a->period_limit == b->period_limit &&
+         a->period_tol == b->period_tol; /* the others are those of the study */
+}
+
+/* A runner for these options. */
+static ric_status prepare(iterated *it, const ric_attractor_options *options, ric_error *error) {
+  if (it->runner && is_same(&it->made, options))
+    return RIC_OK;
+  ric_map_runner_destroy(&it->runner);
+  it->made = *options;
+  return ric_map_runner_create(it->size, options, it->lanes, &it->runner, error);
+}
+
+/* Those from `first` on that have the same options and can be run. @returns how many slots are done with */
+static ric_status run_alike(iterated *it, size_t first, size_t count, ric_attractor *attractors, size_t *done) {
+  const ric_grazing_map *maps[MAP_SLOTS];
+  double d[MAP_SLOTS];
+  size_t alike = 0;
+  ric_error error = {0};
+  while (first + alike < count && it->maps[first + alike].refused.status == RIC_OK &&
+         is_same(&it->maps[first].options, &it->maps[first + alike].options)) {
+    maps[alike] = &it->maps[first + alike].map;
+    d[alike] = it->maps[first + alike].d;
+    alike++;
+  }
+  *done = alike > 0 ? alike : 1;
+  if (alike == 0) {
+    fail(it, &attractors[first], &it->maps[first].refused);
+    return RIC_OK;
+  }
+  ric_status status = prepare(it, &it->maps[first].options, &error);
+  if (status == RIC_OK)
+    status = ric_map_runner_run(it->runner, alike, maps, d, attractors + first, &error);
+  for (size_t i = 0; i < alike && status != RIC_OK && status != RIC_ESTOPPED; i++)
+    fail(it, &attractors[first + i], &error);
+  return status == RIC_ESTOPPED ? status : RIC_OK;
+}
+
+static ric_status run_maps(iterated *it, size_t count, ric_attractor *attractors) {
+  for (size_t first = 0, done; first < count; first += done)
+    RIC_TRY(run_alike(it, first, count, attractors, &done));
+  return RIC_OK;
+}
+
+static ric_status run_motion(iterated *it, ric_attractor *attractor, ric_error *error) {
+  ric_system *system = NULL;
+  ric_motion_section *section = NULL;
+  const lattice_model *m = &it->model;
+  if (!(it->section.period > 0))
+    return ric_fail(error, RIC_EINVAL, "model.frequency = 0, expected > 0: a section takes its period from the force");
+  ric_status status = ric_system_create_lattice(&m->lattice, m->obstacles, m->obstacle_count, &system, error);
+  if (status == RIC_OK)
+    status = ric_motion_section_create(system, &it->section, &section, error);
+  if (status == RIC_OK)
+    status = ric_motion_section_run(section, &it->options, attractor, error);
+  ric_motion_section_destroy(&section);
+  ric_system_destroy(&system);
+  return status;
+}
+
+ric_status iterated_run(iterated *it, size_t count, ric_attractor *attractors) {
+  if (it->maps)
+    return run_maps(it, count, attractors);
+  ric_error error = {0};
+  const ric_status status = it->refused.status == RIC_OK ? run_motion(it, attractors, &error) : it->refused.status;
+  if (it->refused.status != RIC_OK)
+    error = it->refused;
+  if (status == RIC_ESTOPPED)
+    return status;
+  if (status != RIC_OK)
+    fail(it, attractors, &error);
+  return RIC_OK;
+}

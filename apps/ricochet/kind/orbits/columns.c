@@ -1,0 +1,132 @@
+#include "orbits.h"
+
+#include <string.h>
+
+#include "stability.h"
+
+const char *const orbit_outcome_names[RIC_OUTCOME_COUNT] = {
+#define X(name, text) text,
+    RIC_OUTCOME_LIST(X)
+#undef X
+};
+
+static const char *const verification_names[RIC_VERIFICATION_RESULTS] = {
+#define X(name, text) text,
+    RIC_VERIFICATION_LIST(X)
+#undef X
+};
+
+static const char *const stability_names[RIC_STABILITIES] = {
+#define X(name, text) text,
+    RIC_STABILITY_LIST(X)
+#undef X
+};
+
+/* The columns, in the order of the schema page: those of every orbit, of the verifier, of the multipliers. */
+static const column columns[] = {
+    COLUMN("outcome", WORD(orbits_row, outcome, orbit_outcome_names), "outcome of the orbit", .source = "[JAP] (9)"),
+    COLUMN("reason", TEXT(orbits_row, reason, RIC_REASON_BYTES), "which particle, when, by how much",
+           .source = "[JAP] (9)"),
+    COLUMN("q", NUMBERS(orbits_row, q), "position at t = 0+", .source = "[JAP] (7)-(8)", .axes = {"particle"}),
+    COLUMN("v", NUMBERS(orbits_row, v), "velocity at t = 0+", .source = "[JAP] (7)-(8)", .axes = {"particle"}),
+    COLUMN("impulse", NUMBERS(orbits_row, impulse), "velocity jump of each impact, at_start then at_half",
+           .source = "[JAP] (3)", .axes = {"impact"}),
+    COLUMN("energy", NUMBER(orbits_row, energy), "total energy", .source = "[JAP] (1)"),
+    COLUMN("residual", NUMBER(orbits_row, residual), "largest violation of the orbit's equations",
+           .source = "[JAP] (7)-(8)"),
+    COLUMN("clearance", NUMBER(orbits_row, clearance), "smallest gap of the particles that the pattern leaves free",
+           .source = "[JAP] (9)"),
+    COLUMN("clearance_time", NUMBER(orbits_row, clearance_time), "time of the smallest gap, in [0, T/2]",
+           .source = "[JAP] (9)"),
+    COLUMN("clearance_particle", INTEGER(orbits_row, clearance_particle),
+           "particle of the smallest gap, -1 when every particle is in the pattern", .source = "[JAP] (9)"),
+    COLUMN("condition", NUMBER(orbits_row, condition), "condition number of the equations solved",
+           .source = "[JAP] (11)"),
+    COLUMN("mode", INTEGER(orbits_row, mode), "resonant mode of the outcomes grazing and resonant, else -1",
+           .source = "[JAP] (12)"),
+    COLUMN("harmonic", INTEGER(orbits_row, harmonic), "oscillations of that mode per period, else 0",
+           .source = "[JAP] (12)"),
+};
+
+static const column verifier_columns[] = {
+    COLUMN("verified", WORD(orbits_row, verified, verification_names), "what an event-driven run over one period found",
+           .source = "[JAP] (1)-(3)"),
+    COLUMN("closure_error", NUMBER(orbits_row, closure_error),
+           "difference after one period, relative to the largest displacement and velocity", .source = "[JAP] (1)-(3)"),
+};
+
+static const column stability_columns[] = {
+    COLUMN("stable", WORD(orbits_row, stable, stability_names), "whether all multipliers lie in the unit disc",
+           .source = "[JAP] (16)"),
+    COLUMN("stable_reason", TEXT(orbits_row, stable_reason, sizeof((ric_multipliers){0}.reason)),
+           "which multiplier, or why none is known; empty when stable", .source = "[JAP] (16)"),
+    COLUMN("multiplier_max", NUMBER(orbits_row, multiplier_max), "largest modulus of a Floquet multiplier",
+           .source = "[JAP] (16)"),
+    COLUMN("multipliers", COMPLEXES(orbits_row, multipliers), "Floquet multipliers, the largest modulus first",
+           .source = "[JAP] (16)", .axes = {"multiplier"}),
+    COLUMN("multiplier_outside", INTEGER(orbits_row, multiplier_outside),
+           "number of multipliers outside the unit circle by more than the band, -1 when unknown",
+           .source = "[JAP] (16)"),
+    COLUMN("multiplier_real_above", INTEGER(orbits_row, multiplier_real_above),
+           "number of them that are real and positive, -1 when unknown", .source = "[JAP] (16)"),
+    COLUMN("multiplier_real_below", INTEGER(orbits_row, multiplier_real_below),
+           "number of them that are real and negative, -1 when unknown", .source = "[JAP] (16)"),
+    COLUMN("multiplier_complex", INTEGER(orbits_row, multiplier_complex),
+           "number of them that are not real, -1 when unknown", .source = "[JAP] (16)"),
+};
+
+static const column ritz_columns[] = {
+    COLUMN("ritz_functions", INTEGER(orbits_row, ritz_functions),
+           "trial functions per particle, 0 when none were found", .source = "[VID] (2)"),
+    COLUMN("ritz_frequency", NUMBER(orbits_row, ritz_frequency),
+           "angular frequency of the motion when the impact is ignored", .source = "[VID] (2)"),
+    COLUMN("ritz_error", NUMBER(orbits_row, ritz_error),
+           "largest difference of a displacement, at any time, from the orbit found by shooting",
+           .source = "[VID] (2)"),
+    COLUMN("ritz_error_v", NUMBER(orbits_row, ritz_error_v), "the same of a velocity", .source = "[VID] (2)"),
+    COLUMN("ritz_defect", NUMBER(orbits_row, ritz_defect),
+           "largest residual of the equations of motion over the largest acceleration", .source = "[VID] (1a)"),
+};
+
+#define ADD(t, columns, axes, axis_count)                                                                              \
+  table_add((t), (columns), sizeof(columns) / sizeof *(columns), (axes), (axis_count))
+
+void orbits_lay_out(const study_values *v, table *t) {
+  const size_t n = (size_t)value_number(v, KEY_MODEL_PARTICLES, 0);
+  const size_t impacts = value_count(v, KEY_ORBIT_AT_START) + value_count(v, KEY_ORBIT_AT_HALF);
+  table_axis axes[3] = {{"impact", impacts}};
+  size_t count = 1;
+  if (value_flag(v, KEY_ORBIT_STATES))
+    axes[count++] = (table_axis){"particle", n};
+  if (value_flag(v, KEY_ORBIT_MULTIPLIERS))
+    axes[count++] = (table_axis){"multiplier", 2 * n};
+  *t = (table){.group = "orbits", .row_axis = "task"};
+  ADD(t, columns, axes, count);
+  if (value_flag(v, KEY_ORBIT_VERIFY))
+    ADD(t, verifier_columns, axes, count);
+  if (stability_wanted(v)) {
+    ADD(t, stability_columns, axes, count);
+    stability_put_tolerances(t);
+  }
+  if (strcmp(value_word(v, KEY_ORBIT_METHOD), "ritz") == 0)
+    ADD(t, ritz_columns, axes, count);
+  table_lay_out(t);
+}
+
+orbits_row orbits_row_of(const ric_orbit *o, const char *reason, const ric_verification *verification) {
+  return (orbits_row){.outcome = (int)o->outcome,
+                      .reason = reason,
+                      .q = o->q,
+                      .v = o->v,
+                      .impulse = o->impulse,
+                      .energy = o->energy,
+                      .residual = o->residual,
+                      .clearance = o->clearance,
+                      .clearance_time = o->clearance_time,
+                      .clearance_particle = o->clearance_particle,
+                      .condition = o->condition,
+                      .mode = o->mode,
+                      .harmonic = o->harmonic,
+                      .verified = (int)verification->result,
+                      .closure_error = verification->closure_error};
+}

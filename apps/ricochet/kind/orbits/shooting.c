@@ -1,0 +1,268 @@
+/* kind: orbits, by shooting: the motion with the given impacts at every grid point, also of nonlinear models, and what
+ * Ritz's method makes of it. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "kind/family/even_start.h"
+#include "kind/kind.h"
+#include "kind/machine.h"
+#include "orbits.h"
+#include "stability.h"
+#include "kind/trajectory/trajectory.h"
+
+/* Ritz's approximation of the present task. */
+typedef struct ritz_found {
+  size_t functions; /* 0: none */
+  double frequency, error, error_v, defect;
+  char reason[RIC_REASON_BYTES];
+} ritz_found;
+
+struct worker {
+  study_values *values;
+  ric_poll poll;
+  lattice_model model;
+  size_t *hits; /* [impacts] obstacles of orbit.at_start, then those of at_half */
+  size_t starts, halves;
+  even_start found; /* of the present task, as what follows */
+  ric_orbit orbit;
+  ric_verification verification;
+  stability stability;
+  ritz_found ritz;
+};
+
+static bool is_ritz(const study_values *v) {
+  return strcmp(value_word(v, KEY_ORBIT_METHOD), "ritz") == 0;
+}
+
+/* --- before the tasks --- */
+
+static int refuse_impacts(const study *s, const study_values *v, message *why) {
+  char place[256];
+  if (!is_ritz(v) || (value_count(v, KEY_ORBIT_AT_START) == 1 && value_count(v, KEY_ORBIT_AT_HALF) == 0))
+    return 0;
+  study_place(s, KEY_ORBIT_METHOD, place, sizeof place);
+  return refuse(why, EXIT_USAGE,
+                "%s = ritz is for one impact per period, expected one particle in orbit.at_start and "
+                "none in orbit.at_half",
+                place);
+}
+
+static int refuse_special(const study *s, const study_values *v, message *why) {
+  char place[256];
+  if (!value_flag(v, KEY_ORBIT_SPECIAL_POINTS))
+    return 0;
+  study_place(s, KEY_ORBIT_SPECIAL_POINTS, place, sizeof place);
+  return refuse(why, EXIT_USAGE,
+                "%s = true with orbit.method = %s, expected method: impulse or dense (or kind: branch)", place,
+                value_word(v, KEY_ORBIT_METHOD));
+}
+
+static double bytes(const study_values *v) {
+  const double n = value_number(v, KEY_MODEL_PARTICLES, 0), all = n * value_number(v, KEY_ORBIT_FUNCTIONS, 0);
+  return 8 * (16 * n * n + (is_ritz(v) ? 3 * all * all : 0)) + TRAJECTORY_PARTICLE_BYTES * n;
+}
+
+static int shooting_plan(const study *s, kind_plan *plan, message *why) {
+  study_values *v = study_values_create(s);
+  if (!v)
+    return refuse(why, EXIT_RUN, "%s: no memory for the values of a task", study_name(s));
+  *plan = (kind_plan){.outcome = "outcome", .memory = bytes(v)};
+  orbits_lay_out(v, &plan->rows);
+  int code = refuse_impacts(s, v, why);
+  if (!code)
+    code = refuse_special(s, v, why);
+  if (!code)
+    code = stability_check(s, v, why);
+  if (!code)
+    code = machine_refuse_size(s, "an orbit", plan->memory, why);
+  study_values_destroy(&v);
+  return code;
+}
+
+static void shooting_close(worker **out) {
+  worker *w = *out;
+  if (!w)
+    return;
+  even_start_clear(&w->found);
+  stability_clear(&w->stability);
+  ric_orbit_clear(&w->orbit);
+  lattice_model_clear(&w->model);
+  study_values_destroy(&w->values);
+  free(w->hits);
+  free(w);
+  *out = NULL;
+}
+
+static int shooting_open(const study *s, ric_poll poll, worker **out, message *why) {
+  ric_error error = {0};
+  worker *w = *out = calloc(1, sizeof *w);
+  if (!w || !(w->values = study_values_create(s)) || lattice_model_init(&w->model, w->values) != 0) {
+    shooting_close(out);
+    return refuse(why, EXIT_RUN, "%s: no memory for a task", study_name(s));
+  }
+  const size_t n = w->model.lattice.particles;
+  w->poll = poll;
+  w->starts = value_count(w->values, KEY_ORBIT_AT_START);
+  w->halves = value_count(w->values, KEY_ORBIT_AT_HALF);
+  w->hits = calloc(w->starts + w->halves + 1, sizeof *w->hits);
+  ric_status status = w->hits ? RIC_OK : ric_fail(&error, RIC_ENOMEM, "no memory for %zu particles", n);
+  if (status == RIC_OK)
+    status = ric_orbit_init(&w->orbit, n, w->starts + w->halves, &error);
+  if (status == RIC_OK)
+    status = stability_init(&w->stability, w->values, poll, &error);
+  if (status == RIC_OK)
+    return 0;
+  shooting_close(out);
+  return refuse(why, EXIT_RUN, "%s: %s", study_name(s), error.message);
+}
+
+/* --- the motion --- */
+
+static ric_status solve(worker *w, double period, ric_error *error) {
+  lattice_model_read(&w->model, w->values);
+  RIC_TRY(lattice_model_hits(&w->model, w->values, KEY_ORBIT_AT_START, w->hits, error));
+  RIC_TRY(lattice_model_hits(&w->model, w->values, KEY_ORBIT_AT_HALF, w->hits + w->starts, error));
+  const ric_shooting_problem motion = {.kind = RIC_MOTION_EVEN,
+                                       .at_start = w->hits,
+                                       .start_count = w->starts,
+                                       .at_half = w->hits + w->starts,
+                                       .half_count = w->halves,
+                                       .flow = ric_flow_options_default(),
+                                       .poll = w->poll};
+  RIC_TRY(even_start_begin(&w->found, &w->model, &motion, period, error));
+  RIC_TRY(even_start_continue(&w->found, error));
+  return ric_shooting_orbit(ric_family_shooting(w->found.family), w->found.z, period, &w->orbit, error);
+}
+
+/* --- what else is said of it --- */
+
+/* An event-driven run from a quarter of the period on, where nothing is hit. */
+static ric_status run_events(worker *w, ric_error *error) {
+  const size_t n = w->model.lattice.particles, impacts = w->starts + w->halves;
+  const double period = w->orbit.period;
+  ric_verify_options options = ric_verify_options_default();
+  ric_promise *promises = calloc(impacts + 1, sizeof *promises);
+  double *states = calloc(10 * n, sizeof *states);
+  options.motion.poll = w->poll;
+  ric_status status = promises && states ? RIC_OK : ric_fail(error, RIC_ENOMEM, "no memory for %zu impacts", impacts);
+  for (size_t k = 0; k < impacts && status == RIC_OK; k++) {
+    const bool half = k < w->halves;
+    promises[k] = (ric_promise){half ? period / 2 : period, half ? w->hits[w->starts + k] : w->hits[k - w->halves]};
+  }
+  if (status == RIC_OK)
+    status =
+        ric_shooting_states(ric_family_shooting(w->found.family), w->found.z, period, 5, states, states + 5 * n, error);
+  if (status == RIC_OK)
+    status = ric_verify(w->found.system, period / 4, states + n, states + 6 * n, period, promises, impacts, &options,
+                        &w->verification, error);
+  free(promises);
+  free(states);
+  return status;
+}
+
+/* @returns RIC_OK or RIC_ESTOPPED */
+static ric_status verify(worker *w) {
+  ric_error error = {0};
+  w->verification = (ric_verification){.result = RIC_NOT_RUN, .closure_error = NAN};
+  if (!value_flag(w->values, KEY_ORBIT_VERIFY) ||
+      (w->orbit.outcome != RIC_ADMISSIBLE && w->orbit.outcome != RIC_GRAZING))
+    return RIC_OK;
+  const ric_status status = run_events(w, &error);
+  if (status == RIC_OK || status == RIC_ESTOPPED)
+    return status;
+  w->verification = (ric_verification){.result = RIC_RUN_FAILED, .closure_error = NAN};
+  snprintf(w->verification.reason, sizeof w->verification.reason, "%.*s", (int)sizeof w->verification.reason - 1,
+           error.message);
+  return RIC_OK;
+}
+
+/* The orbit's state and energy become those of the approximation. */
+static ric_status take_ritz(worker *w, ric_ritz *ritz, double *c, ric_error *error) {
+  const double period = w->orbit.period, tolerance = value_number(w->values, KEY_ORBIT_TOLERANCE, 0);
+  ric_shooting *shooting = ric_family_shooting(w->found.family);
+  const ric_status status =
+      ric_ritz_refine(ritz, shooting, w->found.z, period, tolerance > 0 ? tolerance : 0, c, &w->ritz.error, error);
+  if (status != RIC_OK && !(status == RIC_ENUMERIC && w->ritz.error < INFINITY))
+    return status;
+  RIC_TRY(ric_ritz_error(ritz, c, period, shooting, w->found.z, NULL, &w->ritz.error_v, error));
+  w->ritz.functions = ric_ritz_functions(ritz);
+  w->ritz.frequency = c[ric_ritz_unknowns(ritz) - 1];
+  w->ritz.defect = ric_ritz_defect(ritz, c, period);
+  ric_ritz_state(ritz, c, period, 0, w->orbit.q, w->orbit.v);
+  w->orbit.energy = ric_system_energy(w->found.system, 0, w->orbit.q, w->orbit.v);
+  return status;
+}
+
+/* @returns RIC_OK or RIC_ESTOPPED */
+static ric_status approximate(worker *w) {
+  ric_error error = {0};
+  ric_ritz *ritz = NULL;
+  double *c = NULL;
+  ric_ritz_options options = ric_ritz_options_default();
+  w->ritz = (ritz_found){.frequency = NAN, .error = NAN, .error_v = NAN, .defect = NAN};
+  if (!is_ritz(w->values) || !isfinite(w->orbit.energy))
+    return RIC_OK;
+  options.functions = (size_t)value_number(w->values, KEY_ORBIT_FUNCTIONS, 0);
+  options.constants = value_flag(w->values, KEY_ORBIT_CONSTANTS);
+  ric_status status = ric_ritz_create(w->found.system, w->hits[0], &options, &ritz, &error);
+  if (status == RIC_OK && !(c = calloc(ric_ritz_unknowns(ritz), sizeof *c)))
+    status = ric_fail(&error, RIC_ENOMEM, "no memory for the coefficients");
+  if (status == RIC_OK)
+    status = take_ritz(w, ritz, c, &error);
+  free(c);
+  ric_ritz_destroy(&ritz);
+  if (status != RIC_OK)
+    snprintf(w->ritz.reason, sizeof w->ritz.reason, "%.*s", RIC_REASON_BYTES - 1, error.message);
+  return status == RIC_ESTOPPED ? status : RIC_OK;
+}
+
+/* --- a task --- */
+
+/* What is violated; else what the verifier says; else what Ritz's method does. */
+static const char *reason_of(const worker *w) {
+  if (w->orbit.reason[0])
+    return w->orbit.reason;
+  return w->verification.reason[0] ? w->verification.reason : w->ritz.reason;
+}
+
+static void fill_row(worker *w, const table *t, unsigned char *row) {
+  orbits_row found = orbits_row_of(&w->orbit, reason_of(w), &w->verification);
+  stability_put(&w->stability, &found);
+  found.ritz_functions = (long long)w->ritz.functions;
+  found.ritz_frequency = w->ritz.frequency;
+  found.ritz_error = w->ritz.error;
+  found.ritz_error_v = w->ritz.error_v;
+  found.ritz_defect = w->ritz.defect;
+  row_fill(t, row, &found);
+}
+
+static int shooting_evaluate(worker *w, const kind_plan *plan, task_range tasks, unsigned char *row, records *tails) {
+  ric_error error = {0};
+  (void)tails;
+  study_values_at(w->values, tasks.first);
+  ric_status status = solve(w, value_number(w->values, KEY_ORBIT_PERIOD, 0), &error);
+  if (status != RIC_OK && status != RIC_ESTOPPED)
+    ric_orbit_fail(&w->orbit, error.message);
+  if (status != RIC_ESTOPPED)
+    status = verify(w);
+  if (status != RIC_ESTOPPED)
+    status = stability_find_motion(&w->stability, w->found.family ? ric_family_shooting(w->found.family) : NULL,
+                                   w->found.z, &w->orbit);
+  if (status != RIC_ESTOPPED)
+    status = approximate(w);
+  even_start_clear(&w->found);
+  if (status == RIC_ESTOPPED)
+    return -1;
+  fill_row(w, &plan->rows, row);
+  return 0;
+}
+
+const kind kind_orbits_shooting = {.name = "orbits",
+                                   .methods = "shooting|ritz",
+                                   .plan = shooting_plan,
+                                   .open = shooting_open,
+                                   .evaluate = shooting_evaluate,
+                                   .close = shooting_close,
+                                   .extra = kind_no_extra};

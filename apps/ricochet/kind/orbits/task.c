@@ -1,0 +1,187 @@
+/* kind: orbits. The orbit of a pattern at every grid point. */
+#include <math.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "model/chain_model.h"
+#include "kind/kind.h"
+#include "kind/machine.h"
+#include "orbits.h"
+#include "stability.h"
+#include "kind/trajectory/trajectory.h"
+
+struct worker {
+  study_values *values;
+  chain_model model;
+  ric_pattern *pattern;
+  int pattern_varies; /* an element of at_start or at_half is swept */
+  ric_orbit_solver *solver;
+  ric_orbit orbit;
+  int verifies;
+  ric_verify_options verify;
+  ric_verification verification; /* of the present task's orbit */
+  stability stability;
+};
+
+static ric_orbit_method method_of(const study_values *v) {
+  return strcmp(value_word(v, KEY_ORBIT_METHOD), "dense") == 0 ? RIC_METHOD_DENSE : RIC_METHOD_IMPULSE;
+}
+
+static int plan_memory(const study *s, const study_values *v, kind_plan *plan, message *why) {
+  chain_model model = {0};
+  ric_pattern *pattern = NULL;
+  ric_error error;
+  /* Before anything large is allocated: four state arrays alone are 32 bytes per particle. */
+  int code = machine_refuse_size(s, "an orbit",
+                                 33 * value_number(v, KEY_MODEL_PARTICLES, 0) + (double)plan->rows.row_bytes, why);
+  if (code)
+    return code;
+  if (chain_model_init(&model, v) != 0)
+    code = refuse(why, EXIT_RUN, "%s: no memory for the floors", study_name(s));
+  else if (chain_model_pattern(v, &pattern, &error) == RIC_OK) {
+    plan->memory = ric_orbit_bytes(&model.chain, pattern, method_of(v)) + 2 * (double)plan->rows.row_bytes;
+    if (value_flag(v, KEY_ORBIT_VERIFY))
+      plan->memory += TRAJECTORY_PARTICLE_BYTES * value_number(v, KEY_MODEL_PARTICLES, 0);
+    plan->memory += stability_bytes(v);
+    code = machine_refuse_size(s, "an orbit", plan->memory, why);
+  }
+  ric_pattern_destroy(&pattern);
+  chain_model_clear(&model);
+  return code;
+}
+
+static int refuse_dense(const study *s, const study_values *v, message *why) {
+  char place[256];
+  double n = value_number(v, KEY_MODEL_PARTICLES, 0);
+  if (method_of(v) != RIC_METHOD_DENSE || n <= RIC_DENSE_PARTICLES)
+    return 0;
+  study_place(s, KEY_ORBIT_METHOD, place, sizeof place);
+  return refuse(why, EXIT_USAGE, "%s = dense with %.0f particles, expected at most %d (or method: impulse)", place, n,
+                RIC_DENSE_PARTICLES);
+}
+
+static int orbits_plan(const study *s, kind_plan *plan, message *why) {
+  study_values *v = study_values_create(s);
+  if (!v)
+    return refuse(why, EXIT_RUN, "%s: no memory for the values of a task", study_name(s));
+  *plan = (kind_plan){.outcome = "outcome"};
+  orbits_lay_out(v, &plan->rows);
+  int code = refuse_dense(s, v, why);
+  if (!code)
+    code = stability_check(s, v, why);
+  if (!code)
+    code = plan_memory(s, v, plan, why);
+  if (!code)
+    code = orbits_special_plan(s, v, why);
+  study_values_destroy(&v);
+  return code;
+}
+
+static void orbits_close(worker **w) {
+  if (!w || !*w)
+    return;
+  stability_clear(&(*w)->stability);
+  ric_orbit_clear(&(*w)->orbit);
+  ric_orbit_solver_destroy(&(*w)->solver);
+  ric_pattern_destroy(&(*w)->pattern);
+  chain_model_clear(&(*w)->model);
+  study_values_destroy(&(*w)->values);
+  free(*w);
+  *w = NULL;
+}
+
+static int sweeps_pattern(const study *s) {
+  for (size_t i = 0; i < study_sweeps(s); i++) {
+    study_key key = study_sweep_at(s, i)->key;
+    if (key == KEY_ORBIT_AT_START || key == KEY_ORBIT_AT_HALF)
+      return 1;
+  }
+  return 0;
+}
+
+static int orbits_open(const study *s, ric_poll poll, worker **out, message *why) {
+  worker *w = calloc(1, sizeof *w);
+  ric_error error = {0};
+  *out = w;
+  if (!w || !(w->values = study_values_create(s)) || chain_model_init(&w->model, w->values) != 0) {
+    orbits_close(out);
+    return refuse(why, EXIT_RUN, "%s: no memory for a task", study_name(s));
+  }
+  size_t m = value_count(w->values, KEY_ORBIT_AT_START) + value_count(w->values, KEY_ORBIT_AT_HALF);
+  ric_orbit_options options = ric_orbit_options_default();
+  options.method = method_of(w->values);
+  options.poll = poll;
+  w->pattern_varies = sweeps_pattern(s);
+  w->verifies = value_flag(w->values, KEY_ORBIT_VERIFY);
+  w->verify = ric_verify_options_default();
+  w->verify.motion.poll = poll;
+  ric_status status = ric_orbit_solver_create(&options, &w->solver, &error);
+  if (status == RIC_OK)
+    status = ric_orbit_init(&w->orbit, w->model.chain.particles, m, &error);
+  if (status == RIC_OK)
+    status = stability_init(&w->stability, w->values, poll, &error);
+  if (status == RIC_OK && !w->pattern_varies)
+    status = chain_model_pattern(w->values, &w->pattern, &error);
+  if (status == RIC_OK)
+    return 0;
+  orbits_close(out);
+  return refuse(why, EXIT_RUN, "%s: %s", study_name(s), error.message);
+}
+
+static ric_status solve(worker *w, ric_error *error) {
+  if (w->pattern_varies) {
+    ric_pattern_destroy(&w->pattern);
+    RIC_TRY(chain_model_pattern(w->values, &w->pattern, error));
+  }
+  return ric_orbit_solve(w->solver, &w->model.chain, w->pattern, value_number(w->values, KEY_ORBIT_PERIOD, 0),
+                         &w->orbit, error);
+}
+
+/* An event-driven run decides about an orbit that seems to be one. @returns RIC_OK or RIC_ESTOPPED */
+static ric_status verify(worker *w) {
+  ric_error error = {0};
+  ric_verification *found = &w->verification;
+  *found = (ric_verification){.result = RIC_NOT_RUN, .closure_error = NAN};
+  if (!w->verifies || (w->orbit.outcome != RIC_ADMISSIBLE && w->orbit.outcome != RIC_GRAZING))
+    return RIC_OK;
+  ric_status status = ric_orbit_verify(w->solver, &w->model.chain, w->pattern, &w->orbit, &w->verify, found, &error);
+  if (status == RIC_OK || status == RIC_ESTOPPED)
+    return status;
+  *found = (ric_verification){.result = RIC_RUN_FAILED, .closure_error = NAN};
+  snprintf(found->reason, sizeof found->reason, "%.*s", (int)sizeof found->reason - 1, error.message);
+  return RIC_OK;
+}
+
+/* What the verifier says has its place where the orbit itself leaves nothing to say. */
+static const char *reason_of(const worker *w) {
+  return w->orbit.reason[0] ? w->orbit.reason : w->verification.reason;
+}
+
+static int orbits_evaluate(worker *w, const kind_plan *plan, task_range tasks, unsigned char *row, records *tails) {
+  ric_error error = {0};
+  (void)tails;
+  study_values_at(w->values, tasks.first);
+  chain_model_read(&w->model, w->values);
+  ric_status status = solve(w, &error);
+  if (status == RIC_ESTOPPED)
+    return -1;
+  if (status != RIC_OK)
+    ric_orbit_fail(&w->orbit, error.message);
+  if (verify(w) == RIC_ESTOPPED ||
+      stability_find(&w->stability, w->solver, &w->model.chain, w->pattern, &w->orbit) == RIC_ESTOPPED)
+    return -1;
+  orbits_row found = orbits_row_of(&w->orbit, reason_of(w), &w->verification);
+  stability_put(&w->stability, &found);
+  row_fill(&plan->rows, row, &found);
+  return 0;
+}
+
+const kind kind_orbits = {.name = "orbits",
+                          .methods = "impulse|dense",
+                          .plan = orbits_plan,
+                          .open = orbits_open,
+                          .evaluate = orbits_evaluate,
+                          .close = orbits_close,
+                          .extra = orbits_special};

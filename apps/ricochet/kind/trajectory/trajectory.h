@@ -1,0 +1,52 @@
+/* kind: trajectory, for its own sources: the columns of its tables. */
+#ifndef RICOCHET_APP_TRAJECTORY_H
+#define RICOCHET_APP_TRAJECTORY_H
+
+#include "kind/kind.h"
+
+/** What a system with a floor and a wall per particle, its flow and its trajectory take per particle at most: about 140
+ *  bytes with rigid floors (ricochet_bench motion_1000000), 130 more per compliant obstacle. */
+enum { TRAJECTORY_PARTICLE_BYTES = 512 };
+
+/** Tails of a trajectory; that of the exponents is there when they are asked for. */
+enum { TAIL_IMPACTS, TAIL_EVENTS, TAIL_LYAPUNOV, TRAJECTORY_TAILS };
+
+/** Outcomes: those of a run, and of tasks without one. */
+enum { TRAJECTORY_NO_ORBIT = RIC_RUN_OUTCOMES, TRAJECTORY_REFUSED, TRAJECTORY_OUTCOMES };
+
+/** A row: the members that its columns name. The sampler fills q and v in their places. */
+typedef struct trajectory_row {
+  int outcome;
+  const char *reason;
+  const double *t;
+  double *q, *v;
+  double time, energy_start, energy_end, impact_loss;
+  long long steps, force_evaluations;
+  double *lyapunov;
+} trajectory_row;
+
+/** A record of an impact or another event. */
+typedef struct event_record {
+  double time;
+  long long particle;
+  int side, kind;
+  double gap_rate, impulse, depth, accumulation;
+} event_record;
+
+/** A record: the exponents by a time. */
+typedef struct lyapunov_record {
+  double time;
+  const double *history;
+} lyapunov_record;
+
+/** What the sizes of rows and tails follow from. */
+typedef struct trajectory_shape {
+  double particles, samples, exponents; /* exponents: 0 when they are not asked for */
+} trajectory_shape;
+
+trajectory_shape trajectory_shape_of(const study_values *v);
+
+/** Lays out the row and the tails. */
+void trajectory_lay_out(const trajectory_shape *shape, kind_plan *plan);
+
+#endif
