@@ -115,4 +115,10 @@ void curve_node_copy(const ric_curve *c, curve_node *to, const curve_node *from)
 /** What the problem's test functions are at a node; NaN is a value. */
 ric_status curve_tests(ric_curve *c, curve_node *node, ric_error *error);
 
+/** Locates the special points between the nodes `from` and `to` of the curve, a step over c->row, in order.
+ *  @param count  set to their number; they are in c->found, their arclength from the start of the step
+ *  @param missed  counts up sign changes at which no zero was found
+ *  @returns what the problem returns, but RIC_ENUMERIC: that is a sign change missed */
+ric_status locate_special(ric_curve *c, size_t *count, size_t *missed, ric_error *error);
+
 #endif

@@ -6,7 +6,6 @@
 #include <gsl/gsl_errno.h>
 
 #include "corrector.h"
-#include "special.h"
 #include "step.h"
 
 /* Special points nearer to a start along a given tangent, over the first step, are the start itself: a branch point or

@@ -1,5 +1,5 @@
 /* Special points: where test functions change sign along a step, and the tangents at branch points. */
-#include "special.h"
+#include "curve.h"
 
 #include <math.h>
 #include <string.h>
@@ -9,7 +9,6 @@
 #include <gsl/gsl_linalg.h>
 
 #include "corrector.h"
-#include "curve.h"
 #include "step.h"
 
 /* The bracket is halved by corrected points to this part of the step. From there the cubic through its ends stands for

@@ -3,9 +3,8 @@
 
 #include <stdlib.h>
 
-#include "numeric/chebyshev.h"
+#include "numeric/polynomial.h"
 #include "numeric/list.h"
-#include "numeric/poly_look.h"
 
 enum { GAP_DEGREE = 12, GAP_NODES = GAP_DEGREE + 1, GAP_PROBES = 2 };
 

@@ -1,7 +1,7 @@
 /* Cheap looks at polynomials: what they say is so, and of motions they say nearly everything. */
 #include "support.h"
 
-#include "numeric/poly_look.h"
+#include "numeric/polynomial.h"
 #include "ricochet/polynomial.h"
 #include "scenario/random_source.h"
 

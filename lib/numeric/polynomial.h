@@ -1,13 +1,15 @@
-/* Cheap looks at polynomials on [0, 1] with certain answers, for most of what is asked of the segments of a motion:
- * internal to the library.
+/* Polynomials on [0, 1]: Chebyshev interpolation, certain minima and first roots, and cheap looks that mostly suffice.
+ * Internal to the library. */
+#ifndef RICOCHET_INTERNAL_POLYNOMIAL_H
+#define RICOCHET_INTERNAL_POLYNOMIAL_H
+
+#include <stdbool.h>
+
+/* Cheap looks at polynomials on [0, 1] with certain answers, for most of what is asked of the segments of a motion.
  *
  * The low powers have a Bernstein form of fixed size, halved a few times; the high powers, which are small in segments,
  * are bounds of their sum, slope and bend. Where a piece is convex a tangent in its valley bounds it sharply. What
- * these looks leave open is for polynomial.h to say. */
-#ifndef RICOCHET_POLY_LOOK_H
-#define RICOCHET_POLY_LOOK_H
-
-#include <stdbool.h>
+ * these looks leave open is for ricochet/polynomial.h to say. */
 
 typedef enum poly_look {
   POLY_ABOVE,    /* above the value on all of [0, 1] */
@@ -27,8 +29,15 @@ poly_look poly_look_fall(const double *c, int degree, double value, double *at);
  *  at most `value`. False is no answer. */
 bool poly_look_leaves(const double *c, int degree, double value);
 
-/** The only root of the polynomial (order 0, falling) or of its derivative (order 1, rising) in [low, high], from a
- *  first guess inside. */
-double poly_bracketed_root(const double *c, int degree, int order, double low, double high, double guess);
+/* Interpolation at Chebyshev points of [0, 1]. */
+
+/** Point k of degree + 1, in increasing order: (1 - cos(pi k / degree)) / 2, the ends included. degree >= 1 */
+double chebyshev_point(int k, int degree);
+
+/** Coefficients a [degree + 1] of the interpolant sum_j a_j T_j(2 x - 1) from its values at the points. */
+void chebyshev_coefficients(const double *values, int degree, double *a);
+
+/** The same polynomial in powers of x, c [degree + 1]. */
+void chebyshev_to_powers(const double *a, int degree, double *c);
 
 #endif
