@@ -1,5 +1,6 @@
 """Fixtures of the tests in Python: the program under test, and an empty folder for each test."""
 
+import os
 import sys
 import tempfile
 from pathlib import Path
@@ -7,6 +8,7 @@ from pathlib import Path
 import pytest
 
 TESTS = Path(__file__).resolve().parent
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # tests run side by side already; before numpy is loaded
 sys.path[:0] = [str(TESTS / "harness"), str(TESTS / "cli")]
 
 from program import Program  # noqa: E402  # behind the path to it
