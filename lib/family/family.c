@@ -73,7 +73,7 @@ static int report_point(const ric_curve_point *c, void *user) {
                             .iterations = c->iterations};
   w->status = family_set(f, c->p, f->problem.second, w->error);
   if (w->status == RIC_OK)
-    w->status = family_look(f, c->u, w->error);
+    w->status = family_judge(f, c->u, w->error);
   if (w->status != RIC_OK)
     return 1;
   point.given = f->given;
@@ -181,7 +181,7 @@ static ric_status curve_residual(const double *u, double p, double *F, double *J
   ric_family *f = user;
   bool exact = !f->problem.set;
   RIC_TRY(family_set(f, p, f->problem.second, error));
-  RIC_TRY(family_see(f, u, F, J, exact ? F_p : NULL, error));
+  RIC_TRY(family_evaluate(f, u, F, J, exact ? F_p : NULL, error));
   return exact ? RIC_OK : difference(f, u, 0, F, F_p, error);
 }
 
@@ -190,7 +190,7 @@ static ric_status test(const double *u, double p, const double *t_u, double t_p,
   ric_family *f = user;
   (void)t_u, (void)t_p;
   RIC_TRY(family_set(f, p, f->problem.second, error));
-  RIC_TRY(family_look(f, u, error));
+  RIC_TRY(family_judge(f, u, error));
   family_tests(f, u, values);
   return RIC_OK;
 }

@@ -61,10 +61,10 @@ ric_status family_residual(ric_family *f, const double *z, size_t by, double *F,
 
 /** Runs along a motion and sees its orbit, its gaps and the matrix of its multipliers.
  *  @param F, J, F_given  by the same run, as ric_shooting_residual; may be NULL */
-ric_status family_see(ric_family *f, const double *z, double *F, double *J, double *F_given, ric_error *error);
+ric_status family_evaluate(ric_family *f, const double *z, double *F, double *J, double *F_given, ric_error *error);
 
 /** Looks at a motion: orbit, verdict, multipliers. No run when it was seen last, nothing when it was looked at. */
-ric_status family_look(ric_family *f, const double *z, ric_error *error);
+ric_status family_judge(ric_family *f, const double *z, ric_error *error);
 
 /** Test functions [tests] of the motion that was looked at. */
 void family_tests(ric_family *f, const double *z, double *values);

@@ -26,7 +26,7 @@ void ric_family_junction_clear(ric_family_junction *junction) {
 void family_show_again(ric_family *f, const ric_family_point *point) {
   family_forget(f);
   if (family_set(f, point->parameter, f->problem.second, NULL) == RIC_OK)
-    (void)family_look(f, point->z, NULL);
+    (void)family_judge(f, point->z, NULL);
   family_forget(f);
 }
 
@@ -251,7 +251,7 @@ static ric_status find_start(crossing *c) {
 static ric_status soundness(ric_family *f, const double *z, double parameter, double second, double *value,
                             ric_error *error) {
   RIC_TRY(family_set(f, parameter, second, error));
-  RIC_TRY(family_look(f, z, error));
+  RIC_TRY(family_judge(f, z, error));
   const shooting_gaps *g = f->shooting->gaps;
   *value = fmin(g->free.value, g->own.value);
   for (size_t k = 0; k < f->impacts; k++)

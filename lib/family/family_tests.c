@@ -19,11 +19,11 @@ static void mark_seen(ric_family *f, const double *z) {
   f->seen_at[1] = f->at[1];
 }
 
-ric_status family_see(ric_family *f, const double *z, double *F, double *J, double *F_given, ric_error *error) {
-  const int what = LOOK_ORBIT | (f->options.multipliers ? LOOK_SPECTRUM : 0);
+ric_status family_evaluate(ric_family *f, const double *z, double *F, double *J, double *F_given, ric_error *error) {
+  const int what = EXAMINE_ORBIT | (f->options.multipliers ? EXAMINE_SPECTRUM : 0);
   f->seen_at[0] = NAN;
   f->judged = false;
-  RIC_TRY(shooting_look(f->shooting, z, f->given, what, F, J, F_given, &f->orbit, error));
+  RIC_TRY(shooting_examine(f->shooting, z, f->given, what, F, J, F_given, &f->orbit, error));
   mark_seen(f, z);
   return RIC_OK;
 }
@@ -41,11 +41,11 @@ static bool was_seen(const ric_family *f, const double *z, double tolerance) {
   return sqrt(moved / n + change * change) <= tolerance * (1 + sqrt(size / n + f->at[0] * f->at[0]));
 }
 
-ric_status family_look(ric_family *f, const double *z, ric_error *error) {
+ric_status family_judge(ric_family *f, const double *z, ric_error *error) {
   if (f->judged && was_seen(f, z, 0))
     return RIC_OK;
   if (f->judged || !was_seen(f, z, f->options.curve.newton_tol))
-    RIC_TRY(family_see(f, z, NULL, NULL, NULL, error));
+    RIC_TRY(family_evaluate(f, z, NULL, NULL, NULL, error));
   RIC_TRY(shooting_judge(f->shooting, z, f->given, &f->orbit, error));
   if (f->options.multipliers)
     RIC_TRY(shooting_multipliers(f->shooting, &f->options.judge, &f->multipliers, error));

@@ -49,7 +49,7 @@ static ric_status psi(tracer *t, const double *z, double first, double second, d
   if (t->kind == RIC_FAMILY_FOLD) {
     RIC_TRY(determinant(t, z, value, error));
   } else if (t->kind == RIC_FAMILY_PERIOD_DOUBLING) {
-    RIC_TRY(shooting_look(f->shooting, z, f->given, LOOK_SPECTRUM, NULL, NULL, NULL, NULL, error));
+    RIC_TRY(shooting_examine(f->shooting, z, f->given, EXAMINE_SPECTRUM, NULL, NULL, NULL, NULL, error));
     *value = shooting_spectrum_tests(f->shooting).minus_one[t->which];
   } else {
     RIC_TRY(ric_shooting_orbit(f->shooting, z, f->given, &f->orbit, error));
@@ -144,7 +144,7 @@ static int report_curve_point(const ric_curve_point *c, void *user) {
 /* --- the start ---------------------------------------------------------------------------------------------------- */
 
 static ric_status choose_multiplier(tracer *t, const ric_family_point *point) {
-  RIC_TRY(shooting_look(t->f->shooting, point->z, t->f->given, LOOK_SPECTRUM, NULL, NULL, NULL, NULL, t->error));
+  RIC_TRY(shooting_examine(t->f->shooting, point->z, t->f->given, EXAMINE_SPECTRUM, NULL, NULL, NULL, NULL, t->error));
   spectrum_tests tests = shooting_spectrum_tests(t->f->shooting);
   t->which = fabs(tests.minus_one[1]) < fabs(tests.minus_one[0]) ? 1 : 0;
   return RIC_OK;

@@ -12,13 +12,13 @@
 /* Where the gap of a motion has a minimum. */
 
 /** A minimum of a gap along a solution of shooting. */
-typedef struct touch {
+typedef struct gap_minimum {
   size_t obstacle;
   double time; /* in [0, T) */
   double gap, rate, acceleration;
   double *x;     /* [n + m] state there; of the caller */
   double *rates; /* [n + m] of the free motion */
-} touch;
+} gap_minimum;
 
 enum { MOST_MINIMUM_STEPS = 30 };
 
@@ -34,7 +34,7 @@ static double folded(double time, double period) {
   return shifted < period ? shifted : 0;
 }
 
-static ric_status read_gap(const ric_system *s, touch *k, ric_error *error) {
+static ric_status read_gap(const ric_system *s, gap_minimum *k, ric_error *error) {
   const size_t n = s->coordinates;
   const double t = k->time;
   RIC_TRY(ric_system_rate(s, t, k->x, k->x + n, k->rates, k->rates + n, error));
@@ -47,15 +47,15 @@ static ric_status read_gap(const ric_system *s, touch *k, ric_error *error) {
 }
 
 /* Where the gap is not convex, a step down its slope. */
-static double step_of(const touch *k, double period) {
+static double step_of(const gap_minimum *k, double period) {
   const double step = -k->rate / fabs(k->acceleration), most = longest_step * period;
   return isnan(step) ? 0 : fmax(-most, fmin(step, most));
 }
 
 /** Moves a touch to the minimum of its gap that is nearest to its time, and sets the rest.
  *  @returns RIC_ENUMERIC where there is none within a period; as ric_shooting_transfer */
-static ric_status touch_find(ric_shooting *s, const double *z, double given, double period, touch *k,
-                             ric_error *error) {
+static ric_status gap_minimum_find(ric_shooting *s, const double *z, double given, double period, gap_minimum *k,
+                                   ric_error *error) {
   double before = INFINITY;
   k->time = folded(k->time, period);
   for (int i = 0; i < MOST_MINIMUM_STEPS; i++) {
@@ -113,8 +113,8 @@ static ric_status degenerate_size(ric_shooting *s, const double *z, double given
 }
 
 /** A_g near zero. */
-static ric_status degenerate_acceleration(const touch *k, double period, double size, const ric_grazing_options *o,
-                                          ric_error *error) {
+static ric_status degenerate_acceleration(const gap_minimum *k, double period, double size,
+                                          const ric_grazing_options *o, ric_error *error) {
   if (k->acceleration * period * period > o->degenerate * size)
     return RIC_OK;
   return ric_fail(error, RIC_ENUMERIC,
@@ -232,7 +232,7 @@ typedef struct minimum {
   double *kept;  /* [unknowns] where a difference sets out */
   double period; /* of it */
   double size;   /* of the gap's changes */
-  touch touch;
+  gap_minimum touch;
 } minimum;
 
 static ric_status solve_minimum(minimum *k, double parameter, ric_error *error) {
@@ -240,7 +240,7 @@ static ric_status solve_minimum(minimum *k, double parameter, ric_error *error) 
   RIC_TRY(family_set(f, parameter, f->problem.second, error));
   RIC_TRY(ric_shooting_solve(f->shooting, k->z, f->given, 0, NULL, error));
   k->period = arcs_period(&f->shooting->arcs, k->z, f->given);
-  return touch_find(f->shooting, k->z, f->given, k->period, &k->touch, error);
+  return gap_minimum_find(f->shooting, k->z, f->given, k->period, &k->touch, error);
 }
 
 /* Central difference; z and the touch are those at the last parameter then. */
@@ -296,7 +296,8 @@ static ric_status refine(minimum *k, ric_grazing *g, ric_error *error) {
  * family has its parameters. @returns as ric_grazing_local_find */
 /* --- from a motion that nearly grazes --- */
 
-static ric_status grazing_keep(const ric_family *f, const touch *at, double period, ric_grazing *g, ric_error *error) {
+static ric_status grazing_keep(const ric_family *f, const gap_minimum *at, double period, ric_grazing *g,
+                               ric_error *error) {
   g->given = f->given;
   g->period = period;
   g->time = at->time;
@@ -316,7 +317,7 @@ static ric_status fill(minimum *k, ric_grazing *g, const ric_grazing_options *o,
   return degenerate_motion(k->f, k->z, g, k->size, o, error);
 }
 
-static ric_status fill_grazing(ric_family *f, double parameter, const touch *at, const ric_grazing_options *o,
+static ric_status fill_grazing(ric_family *f, double parameter, const gap_minimum *at, const ric_grazing_options *o,
                                ric_grazing *g, ric_error *error) {
   minimum k = {.f = f, .z = g->z, .touch = *at};
   g->parameter = parameter;
@@ -352,7 +353,7 @@ static ric_status check_start(const ric_family *f, const ric_grazing *g, const r
 ric_status ric_grazing_take(ric_family *f, const double *z, double parameter, size_t obstacle, double time,
                             const ric_grazing_options *options, ric_grazing *g, ric_error *error) {
   const ric_grazing_options o = options ? *options : ric_grazing_options_default();
-  const touch at = {.obstacle = obstacle, .time = time};
+  const gap_minimum at = {.obstacle = obstacle, .time = time};
   RIC_TRY(check_start(f, g, &o, error));
   if (obstacle >= f->problem.system->obstacle_count)
     return ric_fail(error, RIC_EINVAL, "obstacle = %zu, expected less than %zu", obstacle,
@@ -369,7 +370,7 @@ ric_status ric_grazing_take(ric_family *f, const double *z, double parameter, si
 
 typedef struct walk {
   ric_grazing *g;
-  touch at;
+  gap_minimum at;
   double parameter, reached;
   bool found;
 } walk;
@@ -381,7 +382,7 @@ static int see_point(const ric_family_point *point, void *user) {
     return 0;
   w->found = true;
   w->parameter = point->parameter;
-  w->at = (touch){.obstacle = point->obstacle, .time = point->time};
+  w->at = (gap_minimum){.obstacle = point->obstacle, .time = point->time};
   memcpy(w->g->z, point->z, w->g->unknowns * sizeof *point->z);
   return 1;
 }
@@ -421,13 +422,13 @@ static ric_status find_criterion(tracer *t, const ric_family_curve_point *p, ric
   const size_t obstacle = g->local.obstacle;
   const shooting_gaps *gaps = f->shooting->gaps; /* of the point's orbit: where the gap is zero on the curve */
   const gap_found *least = gaps->hit[obstacle] ? &gaps->own : &gaps->free;
-  touch at = {.obstacle = obstacle, .time = least->time, .x = g->x, .rates = t->rates};
+  gap_minimum at = {.obstacle = obstacle, .time = least->time, .x = g->x, .rates = t->rates};
   if (least->obstacle != obstacle)
     return ric_fail(error, RIC_ENUMERIC, "obstacle %zu is touched where obstacle %zu was", least->obstacle, obstacle);
   memcpy(g->z, p->z, g->unknowns * sizeof *g->z);
   g->parameter = p->parameter;
   g->second = p->second;
-  RIC_TRY(touch_find(f->shooting, g->z, p->given, p->orbit->period, &at, error));
+  RIC_TRY(gap_minimum_find(f->shooting, g->z, p->given, p->orbit->period, &at, error));
   RIC_TRY(grazing_keep(f, &at, p->orbit->period, g, error));
   const ric_grazing_plane plane = {.time = g->time};
   section here;

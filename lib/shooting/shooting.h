@@ -114,17 +114,17 @@ ric_status shooting_fit(ric_shooting *shooting, const double *z, double period, 
 /* What one run along a motion tells, with its equations. */
 
 /** What is looked at: numbers of the orbit and its gaps; the matrix of its multipliers. */
-typedef enum look_at { LOOK_ORBIT = 1, LOOK_SPECTRUM = 2 } look_at;
+typedef enum shooting_parts { EXAMINE_ORBIT = 1, EXAMINE_SPECTRUM = 2 } shooting_parts;
 
 /** Evaluates the equations and looks at the motion by the same run.
- *  @param what  of look_at, added up
+ *  @param what  of shooting_parts, added up
  *  @param F, J, F_given  as ric_shooting_residual; F may be NULL
- *  @param orbit  with LOOK_ORBIT: impacts, state at T/2 and residual are set; s->gaps has the gaps
+ *  @param orbit  with EXAMINE_ORBIT: impacts, state at T/2 and residual are set; s->gaps has the gaps
  *  @returns as ric_shooting_residual, RIC_ENOMEM. */
-ric_status shooting_look(ric_shooting *s, const double *z, double given, int what, double *F, double *J,
-                         double *F_given, ric_orbit *orbit, ric_error *error);
+ric_status shooting_examine(ric_shooting *s, const double *z, double given, int what, double *F, double *J,
+                            double *F_given, ric_orbit *orbit, ric_error *error);
 
-/** First state, period, energy and verdict of the orbit that shooting_look has seen last.
+/** First state, period, energy and verdict of the orbit that shooting_examine has seen last.
  *  @param z  of the orbit, or what it was corrected to since: by less than what is seen of it is exact to */
 ric_status shooting_judge(ric_shooting *s, const double *z, double given, ric_orbit *orbit, ric_error *error);
 
@@ -163,7 +163,7 @@ void shooting_gaps_reset(shooting_gaps *g);
 
 /** For an observer of the motion. @param end  of the segment that counts */
 void shooting_gaps_begin(shooting_gaps *g, const piece_run *run);
-void shooting_gaps_look(shooting_gaps *g, const ric_segment *piece, double end);
+void shooting_gaps_segment(shooting_gaps *g, const ric_segment *piece, double end);
 
 /** At an end of the half period of an even motion, with the state s->x there: gaps of obstacles that it hits elsewhere
  *  are at an extremum. @param hit  which obstacle each coordinate hits there */

@@ -180,7 +180,7 @@ static void look_at_coordinates(shooting_gaps *g, const ric_segment *piece, doub
   }
 }
 
-void shooting_gaps_look(shooting_gaps *g, const ric_segment *piece, double end) {
+void shooting_gaps_segment(shooting_gaps *g, const ric_segment *piece, double end) {
   gap_reader_reset(&g->reader);
   if (g->s->system->obstacles)
     look_at_coordinates(g, piece, end);

@@ -94,17 +94,17 @@ ric_status ric_shooting_amplitude(ric_shooting *s, const double *z, double given
 static const double half_tol = 1e-12;
 
 /* A solution being looked at. */
-typedef struct look {
+typedef struct examination {
   ric_shooting *s;
   const double *z;
   ric_orbit *orbit; /* NULL */
   bool spectrum;
   double period, origin; /* time at which the motion begins */
   size_t impacts;        /* filled so far */
-} look;
+} examination;
 
 /* How much an impulse along the gap of an obstacle changes its rate; NaN for impact maps. */
-static double mobility(look *l, size_t obstacle, double t, const double *x) {
+static double mobility(examination *l, size_t obstacle, double t, const double *x) {
   ric_shooting *s = l->s;
   contact_direction d = {.g = s->contact, .w = s->contact + s->arcs.speeds};
   double sum = 0;
@@ -115,13 +115,13 @@ static double mobility(look *l, size_t obstacle, double t, const double *x) {
   return sum;
 }
 
-static double time_in_period(const look *l, double time) {
+static double time_in_period(const examination *l, double time) {
   double t = fmod(time, l->period);
   return t < 0 ? t + l->period : t;
 }
 
 /* An impact at a state just before it, or just after it (`sign` -1): elastic ones turn the rate around. */
-static void add_impact(look *l, size_t obstacle, double time, const double *x, double sign) {
+static void add_impact(examination *l, size_t obstacle, double time, const double *x, double sign) {
   const ric_system *system = l->s->system;
   ric_orbit *o = l->orbit;
   double rate = NAN, e = system->model->restitution(system, obstacle);
@@ -133,12 +133,12 @@ static void add_impact(look *l, size_t obstacle, double time, const double *x, d
   o->impulse[k] = -(1 + e) * sign * rate / mobility(l, obstacle, time, x);
 }
 
-static bool is_even_motion(const look *l) {
+static bool is_even_motion(const examination *l) {
   return l->s->arcs.kind == RIC_MOTION_EVEN;
 }
 
 /* Impacts at the first state of even motions. */
-static ric_status begin_orbit(look *l, const piece_run *run, ric_error *error) {
+static ric_status begin_orbit(examination *l, const piece_run *run, ric_error *error) {
   const ric_shooting *s = l->s;
   l->origin = run->begin;
   if (!is_even_motion(l))
@@ -150,7 +150,7 @@ static ric_status begin_orbit(look *l, const piece_run *run, ric_error *error) {
 }
 
 static ric_status begins(const piece_run *run, void *user, ric_error *error) {
-  look *l = user;
+  examination *l = user;
   ric_shooting *s = l->s;
   bool first = run->piece == s->arcs.pieces;
   if (l->spectrum && first)
@@ -165,7 +165,7 @@ static ric_status begins(const piece_run *run, void *user, ric_error *error) {
 
 /* State at half the period, of motions that are not even: where a segment passes it. One that ends there has the state
  * before an impact, and the next one has not; rounding must not leave it to neither. */
-static void keep_half(look *l, const ric_segment *piece, double end) {
+static void keep_half(examination *l, const ric_segment *piece, double end) {
   double x = (l->origin + l->period / 2 - piece->start) / piece->length, slack = half_tol * l->period;
   slack /= fabs(piece->length);
   if (!(x > slack && x <= end + slack))
@@ -175,14 +175,14 @@ static void keep_half(look *l, const ric_segment *piece, double end) {
 }
 
 static void see_half_period(const ric_segment *piece, double end, void *user) {
-  look *l = user;
-  shooting_gaps_look(l->s->gaps, piece, end);
+  examination *l = user;
+  shooting_gaps_segment(l->s->gaps, piece, end);
   if (!is_even_motion(l))
     keep_half(l, piece, end);
 }
 
 /* The state at half the period, and the impacts there. */
-static ric_status end_half(look *l, const piece_run *run, ric_error *error) {
+static ric_status end_half(examination *l, const piece_run *run, ric_error *error) {
   const ric_shooting *s = l->s;
   size_t n = s->arcs.coordinates;
   memcpy(l->orbit->q_half, s->x, n * sizeof *s->x);
@@ -194,7 +194,7 @@ static ric_status end_half(look *l, const piece_run *run, ric_error *error) {
 }
 
 static ric_status ends(const piece_run *run, void *user, ric_error *error) {
-  look *l = user;
+  examination *l = user;
   const ric_shooting *s = l->s;
   if (l->spectrum)
     RIC_TRY(shooting_spectrum_pass(l->s, run, error));
@@ -208,7 +208,7 @@ static ric_status ends(const piece_run *run, void *user, ric_error *error) {
 }
 
 /* The second half of an even motion mirrors the impacts between. */
-static void add_mirrored(look *l) {
+static void add_mirrored(examination *l) {
   ric_orbit *o = l->orbit;
   size_t first = l->s->arcs.start_count, count = l->s->arcs.sequence_count;
   for (size_t i = first + count; is_even_motion(l) && i-- > first;) {
@@ -228,7 +228,7 @@ static ric_status check_room(const ric_shooting *s, const ric_orbit *orbit, ric_
                   orbit->particles, orbit->impacts, s->arcs.coordinates, ric_shooting_impacts(s));
 }
 
-static ric_status reserve(look *l, ric_error *error) {
+static ric_status reserve(examination *l, ric_error *error) {
   ric_shooting *s = l->s;
   if (l->orbit)
     RIC_TRY(check_room(s, l->orbit, error));
@@ -237,7 +237,7 @@ static ric_status reserve(look *l, ric_error *error) {
   return l->spectrum ? shooting_spectrum_reserve(s, error) : RIC_OK;
 }
 
-static ric_status finish_orbit(look *l, const double *F, ric_error *error) {
+static ric_status finish_orbit(examination *l, const double *F, ric_error *error) {
   const ric_shooting *s = l->s;
   ric_orbit *o = l->orbit;
   if (s->gaps->trouble)
@@ -247,9 +247,9 @@ static ric_status finish_orbit(look *l, const double *F, ric_error *error) {
   return RIC_OK;
 }
 
-ric_status shooting_look(ric_shooting *s, const double *z, double given, int what, double *F, double *J,
-                         double *F_given, ric_orbit *orbit, ric_error *error) {
-  look l = {.s = s, .z = z, .orbit = what & LOOK_ORBIT ? orbit : NULL, .spectrum = what & LOOK_SPECTRUM};
+ric_status shooting_examine(ric_shooting *s, const double *z, double given, int what, double *F, double *J,
+                            double *F_given, ric_orbit *orbit, ric_error *error) {
+  examination l = {.s = s, .z = z, .orbit = what & EXAMINE_ORBIT ? orbit : NULL, .spectrum = what & EXAMINE_SPECTRUM};
   const shooting_observer observer = {
       .begins = begins, .segment = l.orbit ? see_half_period : NULL, .ends = ends, .whole = l.spectrum, .user = &l};
   double *residual = F ? F : s->residual;
@@ -365,6 +365,6 @@ ric_status shooting_judge(ric_shooting *s, const double *z, double given, ric_or
 }
 
 ric_status ric_shooting_orbit(ric_shooting *s, const double *z, double given, ric_orbit *orbit, ric_error *error) {
-  RIC_TRY(shooting_look(s, z, given, LOOK_ORBIT, NULL, NULL, NULL, orbit, error));
+  RIC_TRY(shooting_examine(s, z, given, EXAMINE_ORBIT, NULL, NULL, NULL, orbit, error));
   return shooting_judge(s, z, given, orbit, error);
 }

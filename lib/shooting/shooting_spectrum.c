@@ -410,6 +410,6 @@ ric_status shooting_multipliers(ric_shooting *s, const ric_multiplier_options *o
 
 ric_status ric_shooting_multipliers(ric_shooting *s, const double *z, double given,
                                     const ric_multiplier_options *options, ric_multipliers *m, ric_error *error) {
-  RIC_TRY(shooting_look(s, z, given, LOOK_SPECTRUM, NULL, NULL, NULL, NULL, error));
+  RIC_TRY(shooting_examine(s, z, given, EXAMINE_SPECTRUM, NULL, NULL, NULL, NULL, error));
   return shooting_multipliers(s, options, m, error);
 }
