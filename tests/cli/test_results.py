@@ -39,6 +39,17 @@ def shipped_runs(ricochet, sanitized):
     return folder, runs
 
 
+@pytest.mark.sanitized
+def test_a_study_of_every_kind_goes_through_the_program(ricochet, folder, sanitized):
+    """With all others these are run below; under sanitizers these few stand for them."""
+    if not sanitized:
+        pytest.skip("all shipped studies are run")
+    for name in ("multipliers", "bouncing_chain", "duffing", "grazing_regimes", "diagram_map", "basin", "ritz"):
+        path = ricochet.studies / f"{name}.yaml"
+        ricochet.run(path, *coarser(path), cwd=folder).expect_done()
+        ricochet("show", f"{name}.h5", "--verify", cwd=folder).expect_done()
+
+
 @pytest.fixture(scope="module")
 def shipped(shipped_runs):
     """The results of all shipped studies."""

@@ -97,6 +97,7 @@ def test_whatever_is_damaged_show_neither_crashes_nor_hangs(ricochet, folder):
         list(pool.map(look, range(0, len(data), len(data) // 200)))
 
 
+@pytest.mark.sanitized
 def test_truncated_results_are_refused_by_every_command(ricochet, folder):
     data = ricochet.result_of(STUDY).read_bytes()
     for length in (0, 1, 8, 100, 2048, len(data) // 2, len(data) - 100, len(data) - 1):
@@ -163,6 +164,7 @@ def test_truncated_checkpoints_resume_from_their_whole_records(ricochet, folder,
     assert 0 < assert_resumes(ricochet, folder, checkpoint, lambda data: data[:50], ranks=3) < whole
 
 
+@pytest.mark.sanitized
 def test_checkpoints_with_something_else_at_their_end_resume(ricochet, folder, checkpoint):
     whole = assert_resumes(ricochet, folder, checkpoint, lambda data: data + b"\0" * 5000)
     assert whole >= 40

@@ -4,6 +4,7 @@ import os
 import signal
 import time
 
+import pytest
 from program import (
     FILES,
     STOPPED,
@@ -52,6 +53,7 @@ def tasks_in_message(result):
 # --- stops ---
 
 
+@pytest.mark.sanitized
 def test_sigusr1_stops_with_a_checkpoint_and_resume_computes_only_the_rest(ricochet, folder):
     for ranks, more in [(0, 3), (3, 2)]:
         own = folder / str(ranks)
