@@ -155,9 +155,3 @@ def test_what_cannot_be_is_refused(ricochet, folder):
         refused = ricochet(command, "t.yaml", cwd=folder)
         refused.expect_refused(USAGE, "t.yaml:4: time.lyapunov_interval = 0 ", ">= 1e-06")
         ricochet(command, "o.yaml", cwd=folder).expect_refused(USAGE, "o.yaml:", "time.lyapunov", "kind: trajectory")
-
-
-if __name__ == "__main__":
-    import program
-
-    program.main()

@@ -40,7 +40,7 @@ def refused_by_both(ricochet, folder, text, place, *phrases):
 
 
 def refuse_all(ricochet, folder, cases):
-    """Cases of (text, line, phrases...), several at a time: a process that starts MPI mostly sleeps."""
+    """Cases of (text, line, phrases...), several at a time."""
 
     def refuse(number, text, line, *phrases):
         own = folder / str(number)

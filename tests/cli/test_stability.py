@@ -154,9 +154,3 @@ def test_orbits_only_have_multipliers(ricochet, folder):
     text = trajectory().replace("start: {v: 2}", "orbit: {period: 4, at_start: [0], stable: true}")
     write(folder, "s.yaml", text)
     ricochet("check", "s.yaml", cwd=folder).expect_refused(USAGE, "s.yaml:3: orbit.stable is a key of kind: orbits")
-
-
-if __name__ == "__main__":
-    import program
-
-    program.main()

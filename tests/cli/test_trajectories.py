@@ -241,9 +241,3 @@ def test_show_lists_every_table_of_a_trajectory(ricochet, folder):
     out = ricochet("show", path, cwd=folder).expect_done().out
     for phrase in ("outcome: completed 6", "[task 6, sample 1001, particle 1]", "[task_edge 7]", "impact_kind:"):
         assert phrase in out, (phrase, out)
-
-
-if __name__ == "__main__":
-    import program
-
-    program.main()
