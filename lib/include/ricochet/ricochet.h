@@ -17,6 +17,7 @@
 #include "grazing.h"
 #include "grazing_criterion.h"
 #include "grazing_map.h"
+#include "guess.h"
 #include "impact_modes.h"
 #include "lattice.h"
 #include "lyapunov.h"

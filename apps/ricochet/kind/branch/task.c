@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "walk.h"
-#include "kind/family/family_task.h"
 #include "kind/machine.h"
 
 struct worker {
@@ -79,7 +78,7 @@ static ric_status follow(worker *w, const kind_plan *plan, records *tails, branc
   status = family_task_begin(&w->task, &error);
   if (status != RIC_OK)
     return note_unborn(plan, tails, status, &error, CURVE_FAILED_START, result);
-  return branch_walk(&w->task.family, &w->task.guess, plan, tails, result);
+  return branch_walk(&w->task, plan, tails, result);
 }
 
 static void fill_row(const branch_result *result, const table *t, unsigned char *row) {

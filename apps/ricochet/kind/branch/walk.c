@@ -363,7 +363,7 @@ static ric_status follow(walk *w, segment *s, branch_result *result) {
   return w->status;
 }
 
-static ric_status follow_all(walk *w, const branch_guess *guess, branch_result *result) {
+static ric_status follow_all(walk *w, const family_task *t, branch_result *result) {
   segment *first = &w->segments[w->count++];
   ric_error error = {0};
   int iterations = 0;
@@ -371,7 +371,7 @@ static ric_status follow_all(walk *w, const branch_guess *guess, branch_result *
   first->z = calloc(ric_shooting_unknowns(ric_family_shooting(first->family)), sizeof *first->z);
   if (!first->z)
     return RIC_ENOMEM;
-  const ric_status started = branch_guess_solve(guess, w->b, first->z, &first->parameter, &iterations, &error);
+  const ric_status started = family_task_solve(t, first->z, &first->parameter, &iterations, &error);
   if (started == RIC_ESTOPPED)
     return started;
   keep_trouble(first, started, &error);
@@ -393,8 +393,8 @@ static void clear(walk *w) {
   free(w->meetings);
 }
 
-ric_status branch_walk(branch_family *b, const branch_guess *guess, const kind_plan *plan, records *tails,
-                       branch_result *result) {
+ric_status branch_walk(family_task *t, const kind_plan *plan, records *tails, branch_result *result) {
+  branch_family *b = &t->family;
   walk w = {.b = b,
             .plan = plan,
             .tails = tails,
@@ -406,7 +406,7 @@ ric_status branch_walk(branch_family *b, const branch_guess *guess, const kind_p
             .most = (size_t)value_number(b->values, KEY_BRANCH_SEGMENTS, 0)};
   w.segments = calloc(w.most, sizeof *w.segments);
   w.meetings = calloc(w.most, sizeof *w.meetings);
-  const ric_status status = w.segments && w.meetings ? follow_all(&w, guess, result) : RIC_ENOMEM;
+  const ric_status status = w.segments && w.meetings ? follow_all(&w, t, result) : RIC_ENOMEM;
   result->points = w.points;
   result->segments = w.count;
   clear(&w);

@@ -3,8 +3,7 @@
 #define RICOCHET_APP_BRANCH_WALK_H
 
 #include "branch.h"
-#include "kind/family/branch_family.h"
-#include "kind/family/branch_guess.h"
+#include "kind/family/family_task.h"
 
 /** How the first segment ended, and what all of them took. */
 typedef struct branch_result {
@@ -14,11 +13,10 @@ typedef struct branch_result {
   unsigned long long iterations, jacobians;
 } branch_result;
 
-/** Follows an open family from a guess, and further segments where the study asks for them.
+/** Follows the family of a task from its start, and further segments where the study asks for them.
  *  @param tails  [plan->tail_count], behind the records of earlier tasks
  *  @returns RIC_OK, also for a branch that does not begin; RIC_ESTOPPED; RIC_ENOMEM when records do not fit */
-ric_status branch_walk(branch_family *b, const branch_guess *guess, const kind_plan *plan, records *tails,
-                       branch_result *result);
+ric_status branch_walk(family_task *t, const kind_plan *plan, records *tails, branch_result *result);
 
 /** The row's segment of a branch that never began. @returns RIC_OK or RIC_ENOMEM */
 ric_status branch_put_unborn(const kind_plan *plan, records *tails, int outcome, const char *reason);
