@@ -16,7 +16,7 @@ PUBLIC = {  # public headers by room
     "floquet": {"monodromy", "multipliers", "orbit_multipliers", "lyapunov"},
     "shooting": {"shooting", "ritz"},
     "continuation": {"continuation"},
-    "family": {"family", "guess"},
+    "family": {"explore", "family", "guess"},
     "grazing": {"bypass", "grazing", "grazing_criterion", "grazing_map"},
     "attractor": {"attractor", "cycle_window", "motion_section", "motion_window"},
 }

@@ -12,6 +12,7 @@
 #include "continuation.h"
 #include "cycle_window.h"
 #include "event.h"
+#include "explore.h"
 #include "family.h"
 #include "flow.h"
 #include "grazing.h"
