@@ -43,6 +43,7 @@
 #include "trajectory.h"
 #include "user_system.h"
 #include "verify.h"
+#include "windows.h"
 #include "ricochet/version.h"
 
 #endif
