@@ -18,7 +18,7 @@ PUBLIC = {  # public headers by room
     "continuation": {"continuation"},
     "family": {"explore", "family", "guess"},
     "grazing": {"bypass", "grazing", "grazing_criterion", "grazing_map"},
-    "attractor": {"attractor", "cycle_window", "motion_section", "motion_window", "windows"},
+    "attractor": {"attractor", "basin", "cycle_window", "motion_section", "motion_window", "windows"},
 }
 BASE = {"status", "export", "version"}
 UMBRELLA = "ricochet.h"

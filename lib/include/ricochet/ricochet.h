@@ -7,6 +7,7 @@
 #define RICOCHET_H
 
 #include "attractor.h"
+#include "basin.h"
 #include "bypass.h"
 #include "chain.h"
 #include "continuation.h"
