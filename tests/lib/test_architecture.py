@@ -13,7 +13,7 @@ PUBLIC = {  # public headers by room
     "flow": {"segment", "flow"},
     "impact": {"event", "trajectory", "saltation"},
     "orbit": {"pattern", "orbit", "verify", "impact_modes"},
-    "floquet": {"monodromy", "multipliers", "orbit_multipliers", "lyapunov"},
+    "floquet": {"monodromy", "multipliers", "orbit_multipliers", "lyapunov", "special_points"},
     "shooting": {"shooting", "ritz"},
     "continuation": {"continuation"},
     "family": {"explore", "family", "guess"},

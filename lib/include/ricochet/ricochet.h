@@ -39,6 +39,7 @@
 #include "saltation.h"
 #include "segment.h"
 #include "shooting.h"
+#include "special_points.h"
 #include "status.h"
 #include "system.h"
 #include "trajectory.h"
