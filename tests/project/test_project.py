@@ -54,6 +54,32 @@ def test_sources_are_as_clang_format_leaves_them(source):
     assert files and done.returncode == 0, done.stderr[-2000:]
 
 
+def words_of(text, heading):
+    """Names of the chapters under a heading of the study reference, in order."""
+    chapter = re.search(rf"^## {heading}\n(.*?)(?=^## |\Z)", text, re.M | re.S).group(1)
+    return re.findall(r"^### `[\w.]+: (\w+)`$", chapter, re.M)
+
+
+def test_every_kind_and_model_has_a_chapter_with_an_example_and_a_line_of_help(ricochet, source, folder):
+    reference = (source / "docs" / "studies.md").read_text()
+    help_text = ricochet("--help", cwd=folder).expect_done().out
+    for heading, key in (("Kinds of study", "kind"), ("Models", "model.type")):
+        allowed = re.search(rf"^\| `{key}` \| one of ([\w, ]+) \|", reference, re.M).group(1).split(", ")
+        assert words_of(reference, heading) == allowed
+        for word in allowed:
+            chapter = reference.split(f"### `{key}: {word}`")[1].split("\n##")[0]
+            assert re.search(rf"```yaml\n.*\b{key.split('.')[-1]}: {word}\b.*?```", chapter, re.S), word
+            assert re.search(rf"^  {word} +\w", help_text, re.M), word
+
+
+def test_examples_of_the_study_reference_are_studies(ricochet, source, folder):
+    examples = re.findall(r"```yaml\n(.*?)```", (source / "docs" / "studies.md").read_text(), re.S)
+    assert examples
+    for example in examples:
+        (folder / "example.yaml").write_text(example)
+        ricochet("check", "example.yaml", cwd=folder).expect_done()
+
+
 def test_the_study_reference_is_what_the_schema_table_prints(ricochet, source, folder):
     """To renew it: ricochet check --reference > docs/studies.md."""
     printed = ricochet("check", "--reference", cwd=folder).expect_done().out

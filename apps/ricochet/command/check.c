@@ -20,7 +20,7 @@ static const char help[] =
 
 static void print_plan(const study *s, const kind_plan *plan) {
   char memory[32], size[32];
-  printf("%s: kind %s\n", study_name(s), kind_of(s)->name);
+  printf("%s: kind %s\n", study_name(s), study_kind(s));
   for (size_t i = 0; i < study_sweeps(s); i++) {
     const study_sweep *w = study_sweep_at(s, i);
     printf("  sweep   %s: %zu values from %.12g to %.12g\n", w->name, w->points, w->values[0],
@@ -61,7 +61,7 @@ int command_check(int argc, char **argv) {
     if (option == 's')
       sets[set_count++] = optarg;
     else if (option == 'r' || option == 'h') {
-      option == 'h' ? (void)fputs(help, stdout) : schema_reference(stdout);
+      option == 'h' ? (void)fputs(help, stdout) : schema_reference(&studies, stdout);
       done = 1;
     } else if (option != -1)
       code = refuse(&why, EXIT_USAGE,

@@ -7,7 +7,8 @@
 #include <string.h>
 
 #include "../result/motion.h"
-#include "../study/study.h"
+#include "../kind/branch/branch.h"
+#include "../kind/family/family_check.h"
 
 /* Impacts closer than this part of the period to t = 0 or T/2 are there. */
 static const double at_once = 1e-9;
@@ -85,12 +86,14 @@ static bool is_swept(const study *s, const char *name) {
 /* Where the branch starts, of a parameter that did not vary in the result: at the motion's own period or energy, at
  * what the study says, or else at the number of its model. */
 static void assign_from(assignments *a, const study *s, const study_values *v, const result_motion *m) {
-  const study_parameter *followed = study_followed(s);
+  const study_parameter *followed = family_followed(s);
+  if (!followed)
+    return;
   if (followed->key == KEY_ORBIT_PERIOD)
     assign_number(a, "branch.from", m->period);
   else if (followed->key == KEY_ORBIT_ENERGY)
     assign_number(a, "branch.from", m->energy);
-  else if (followed->key != KEY_COUNT && !study_gives(s, KEY_BRANCH_FROM) && value_present(v, followed->key))
+  else if (!study_gives(s, KEY_BRANCH_FROM) && value_present(v, followed->key))
     assign_number(a, "branch.from", value_number(v, followed->key, followed->item < 0 ? 0 : (size_t)followed->item));
 }
 
@@ -102,12 +105,13 @@ static bool is_done_with(const study *s, const char *name) {
   for (size_t i = 0; i < sizeof guesses / sizeof *guesses; i++)
     if (strncmp(name, guesses[i], strlen(guesses[i])) == 0)
       return true;
-  return study_followed(s)->key == KEY_ORBIT_PERIOD && strcmp(name, "orbit.energy") == 0;
+  const study_parameter *followed = family_followed(s);
+  return followed && followed->key == KEY_ORBIT_PERIOD && strcmp(name, "orbit.energy") == 0;
 }
 
 /* The numbers that vary in the result, but those that vary in the study. */
 static void assign_numbers(assignments *a, const study *s, const study_values *v, const result_motion *m) {
-  const char *followed = study_followed(s)->key == KEY_COUNT ? "" : study_followed(s)->name;
+  const char *followed = family_followed(s) ? family_followed(s)->name : "";
   bool known = false;
   for (size_t i = 0; i < m->number_count; i++) {
     const result_number *n = &m->numbers[i];
@@ -126,7 +130,7 @@ static bool is_fixed(const study *s, study_key key, const char *name, const resu
   for (size_t i = 0; i < m->number_count; i++)
     if (strcmp(m->numbers[i].name, name) == 0)
       return false;
-  return study_followed(s)->key != key && !is_swept(s, name);
+  return !(family_followed(s) && family_followed(s)->key == key) && !is_swept(s, name);
 }
 
 /* The numbers of the motion that the model does not give: its period, and its energy where the study has one. */
@@ -249,7 +253,13 @@ static int parse_again(const study *s, const study_values *v, const result_motio
     assign_period(a, s, v, m);
     assign_impacts(a, v, m, store);
   }
-  const int code = store && !a->failed ? study_parse(study_name(s), a->text, a->length, a->all, a->count, out, why)
+  const int code = store && !a->failed ? study_parse(&(study_source){.schema = &studies,
+                                                                     .name = study_name(s),
+                                                                     .text = a->text,
+                                                                     .length = a->length,
+                                                                     .sets = a->all,
+                                                                     .set_count = a->count},
+                                                     out, why)
                                        : refuse(why, EXIT_RUN, "%s: no memory for its start", study_name(s));
   free(store);
   return code;
@@ -291,8 +301,11 @@ int restart_read_study(const char *path, const char *const *sets, size_t set_cou
   *out = NULL;
   int code = study_read_file(path, &text, &length, why);
   if (!code)
-    code = study_parse(path, text, length, sets, set_count, out, why);
-  if (!code && study_restarts(*out))
+    code = study_parse(
+        &(study_source){
+            .schema = &studies, .name = path, .text = text, .length = length, .sets = sets, .set_count = set_count},
+        out, why);
+  if (!code && branch_restarts(*out))
     code = complete(out, text, length, sets, set_count, why);
   free(text);
   return code;

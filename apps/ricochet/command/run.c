@@ -60,8 +60,9 @@ static int load(run *r, message *why) {
   char *text = first ? (char *)(uintptr_t)study_text(r->study) : NULL; /* read only: rank 0 gives it away */
   size_t length = first ? strlen(text) : 0;
   code = ranks_share_text(&text, &length, why);
+  const study_source shared = {.schema = &studies, .name = o->study_path, .text = text, .length = length};
   if (!code)
-    code = ranks_agree(first ? 0 : study_parse(o->study_path, text, length, NULL, 0, &r->study, why), why);
+    code = ranks_agree(first ? 0 : study_parse(&shared, &r->study, why), why);
   if (!first)
     free(text);
   if (code)

@@ -14,17 +14,17 @@
 
 static int check_creator(const place *at, hid_t file) {
   char creator[64] = "";
-  int64_t schema = 0;
+  int64_t version = 0;
   htri_t marked = H5Aexists(file, "creator");
   int code = marked > 0 ? attribute_text_into(at, file, "creator", creator, sizeof creator) : 0;
   if (code)
     return code;
   if (strcmp(creator, RESULT_CREATOR) != 0)
     return refuse(at->why, EXIT_FILES, "%s: no result of ricochet (attribute creator = \"%s\")", at->path, creator);
-  code = attribute_integer(at, file, "schema_version", &schema);
-  if (!code && (schema < 1 || schema > RESULT_SCHEMA_VERSION))
+  code = attribute_integer(at, file, "schema_version", &version);
+  if (!code && (version < 1 || version > RESULT_SCHEMA_VERSION))
     code = refuse(at->why, EXIT_FILES, "%s: schema_version = %lld, this program reads 1 to %d", at->path,
-                  (long long)schema, RESULT_SCHEMA_VERSION);
+                  (long long)version, RESULT_SCHEMA_VERSION);
   return code;
 }
 

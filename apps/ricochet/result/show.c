@@ -30,18 +30,18 @@ static int show_line(const place *at, hid_t object, const char *label, const cha
 
 static int show_heading(const place *at, hid_t file) {
   char version[64], time[64], sha[64], *compiler = NULL;
-  int64_t schema;
+  int64_t layout;
   int code = attribute_text_into(at, file, "creator_version", version, sizeof version);
   if (!code)
     code = attribute_text_into(at, file, "file_time", time, sizeof time);
   if (!code)
     code = attribute_text_into(at, file, "git_sha", sha, sizeof sha);
   if (!code)
-    code = attribute_integer(at, file, "schema_version", &schema);
+    code = attribute_integer(at, file, "schema_version", &layout);
   if (!code)
     code = attribute_text(at, file, "compiler", &compiler);
   if (!code) {
-    printf("%s: result of ricochet %s (schema %" PRId64 "), %s\n", at->path, version, schema, time);
+    printf("%s: result of ricochet %s (schema %" PRId64 "), %s\n", at->path, version, layout, time);
     code = show_line(at, file, "title", "title");
   }
   if (!code)

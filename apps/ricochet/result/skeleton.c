@@ -85,15 +85,6 @@ static void utc_text(time_t at, char *text, size_t size) {
     snprintf(text, size, "unknown");
 }
 
-static int put_title(const place *at, hid_t file, const study *s) {
-  study_values *values = study_values_create(s);
-  if (!values)
-    return refuse(at->why, EXIT_RUN, "%s: out of memory", at->path);
-  int code = attribute_put_text(at, file, "title", value_word(values, KEY_TITLE));
-  study_values_destroy(&values);
-  return code;
-}
-
 static int put_root(const place *at, hid_t file, const result_header *header) {
   char digest[17], now[32];
   snprintf(digest, sizeof digest, "%016llx", (unsigned long long)study_digest(header->study));
@@ -108,7 +99,7 @@ static int put_root(const place *at, hid_t file, const result_header *header) {
   for (size_t i = 0; !code && i < sizeof texts / sizeof texts[0]; i++)
     code = attribute_put_text(at, file, texts[i][0], texts[i][1]);
   if (!code)
-    code = put_title(at, file, header->study);
+    code = attribute_put_text(at, file, "title", study_title(header->study));
   if (!code)
     code = attribute_put_checked_text(at, file, "study", study_text(header->study));
   return code;

@@ -22,18 +22,18 @@ typedef struct typed_value {
  *  @param label  how messages call the key: "model.gamma", "sweep[1].from"
  *  @param value  overwritten; the caller clears it, also after a refusal
  *  @returns 0, EXIT_USAGE, or EXIT_RUN when out of memory. */
-int typed_read(const document *d, int key, int node, const schema_entry *row, const char *label, typed_value *value,
+int typed_read(const document *d, int key, int node, study_key row, const char *label, typed_value *value,
                message *why);
 
 /** The default of a row, absent where there is none. False: out of memory.
- *  @param model  type of the model, NULL where the study does not say it */
-bool typed_default(const schema_entry *row, const char *model, typed_value *value);
+ *  @param model  the type of model, NULL where the study does not say it */
+bool typed_default(study_key row, const schema_choice *model, typed_value *value);
 void typed_clear(typed_value *value);
 
 /** Node of element `i` of a value that was given. */
 int typed_item_node(const document *d, const typed_value *value, size_t i);
 
 /** Refuses a computed value that does not meet the row, naming it. @param node  where it was given. */
-int typed_check(const document *d, int node, const schema_entry *row, const char *label, double value, message *why);
+int typed_check(const document *d, int node, study_key row, const char *label, double value, message *why);
 
 #endif

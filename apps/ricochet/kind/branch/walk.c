@@ -17,7 +17,7 @@ typedef struct curve_origin {
 
 /* Whether the study wants curves through special points of this kind. */
 static bool is_traced(const branch_family *b, ric_family_kind what) {
-  const char *words = schema_row(KEY_BRANCH_TRACE_KINDS)->words, *name = ric_family_kind_name(what);
+  const char *words = KEY_BRANCH_TRACE_KINDS->words, *name = ric_family_kind_name(what);
   const long place = schema_find_word(name, strlen(name), words);
   for (size_t i = 0; b->traced && i < value_count(b->values, KEY_BRANCH_TRACE_KINDS); i++)
     if (value_number(b->values, KEY_BRANCH_TRACE_KINDS, i) == (double)place)

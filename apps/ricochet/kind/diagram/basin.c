@@ -131,7 +131,7 @@ static int sort_all(sorting *k, const study *s, const row_source *done, ric_poll
 
 int basin_attractors(const study *s, const kind_plan *plan, const row_source *done, ric_poll poll, extra_rows *extra,
                      message *why) {
-  sorting k = {.plan = plan, .size = study_state_size(s)};
+  sorting k = {.plan = plan, .size = diagram_state_size(s)};
   lay_out(&k, s);
   const int code = sort_all(&k, s, done, poll, why);
   free(k.row);

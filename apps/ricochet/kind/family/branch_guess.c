@@ -1,4 +1,5 @@
 #include "branch_guess.h"
+#include "kind/keys.h"
 
 #include <math.h>
 #include <stdlib.h>

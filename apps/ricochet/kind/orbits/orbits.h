@@ -48,4 +48,6 @@ int orbits_special_plan(const study *s, const study_values *v, message *why);
 int orbits_special(const study *s, const kind_plan *plan, const row_source *done, ric_poll poll, extra_rows *extra,
                    message *why);
 
+extern const kind kind_orbits, kind_orbits_shooting;
+
 #endif

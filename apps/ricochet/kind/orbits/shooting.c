@@ -259,9 +259,7 @@ static int shooting_evaluate(worker *w, const kind_plan *plan, task_range tasks,
   return 0;
 }
 
-const kind kind_orbits_shooting = {.name = "orbits",
-                                   .methods = "shooting|ritz",
-                                   .plan = shooting_plan,
+const kind kind_orbits_shooting = {.plan = shooting_plan,
                                    .open = shooting_open,
                                    .evaluate = shooting_evaluate,
                                    .close = shooting_close,

@@ -1,10 +1,11 @@
 #include "orbits.h"
+#include "kind/pattern.h"
 
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
 
-#include "model/chain_model.h"
+#include "model/chain.h"
 #include "stability.h"
 
 enum { MOST_POINTS = 100000 };
@@ -278,7 +279,7 @@ static ric_status set_up(search *s, chain_model *model, const study_values *v, r
   s->model = model;
   if (chain_model_init(model, v) != 0)
     return ric_fail(error, RIC_ENOMEM, "no memory for the floors");
-  RIC_TRY(chain_model_pattern(v, &s->pattern, error));
+  RIC_TRY(pattern_read(v, &s->pattern, error));
   return ric_orbit_solver_create(&options, &s->solver, error);
 }
 

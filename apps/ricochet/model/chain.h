@@ -1,10 +1,10 @@
-/* The chain and the impact pattern that a study's values describe. */
-#ifndef RICOCHET_APP_CHAIN_MODEL_H
-#define RICOCHET_APP_CHAIN_MODEL_H
+/* The linear chain that a study's values describe. */
+#ifndef RICOCHET_APP_CHAIN_H
+#define RICOCHET_APP_CHAIN_H
 
 #include <ricochet/ricochet.h>
 
-#include "study/study.h"
+#include "model.h"
 
 /** A chain with the storage of its floors. */
 typedef struct chain_model {
@@ -18,11 +18,5 @@ void chain_model_clear(chain_model *m);
 
 /** Reads the chain of the present task. */
 void chain_model_read(chain_model *m, const study_values *v);
-
-/** What is at the ends. */
-ric_ends chain_model_ends(const study_values *v);
-
-/** Reads the pattern of the present task; the caller destroys it. */
-ric_status chain_model_pattern(const study_values *v, ric_pattern **pattern, ric_error *error);
 
 #endif
