@@ -1,7 +1,6 @@
 #include "restart.h"
 
 #include <math.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,65 +12,24 @@
 /* Impacts closer than this part of the period to t = 0 or T/2 are there. */
 static const double at_once = 1e-9;
 
-enum { MOST_ADDED = 16 };
+enum { MOST_ADDED = 16 + RESULT_MOST_NUMBERS };
 
-/* The text of a study and its assignments, those of the command line first. */
-typedef struct assignments {
-  const char *text;
-  size_t length;
-  const char **all; /* [count] */
-  size_t given, count;
-  int failed; /* no memory */
-} assignments;
+/* What a study takes from the motion: the numbers that its assignments point to stand beside them. */
+typedef struct taken {
+  study_assignment all[MOST_ADDED];
+  double numbers[MOST_ADDED];
+  size_t count;
+} taken;
 
-/* A text that grows. */
-typedef struct line {
-  char *text;
-  size_t length, room;
-  int failed;
-} line;
-
-static void append(line *l, const char *format, ...) __attribute__((format(printf, 2, 3)));
-
-static void append(line *l, const char *format, ...) {
-  enum { LONGEST = 160 };
-  if (l->room - l->length < LONGEST) {
-    char *more = realloc(l->text, 2 * l->room + LONGEST);
-    l->failed = l->failed || !more;
-    if (l->failed)
-      return;
-    l->text = more;
-    l->room = 2 * l->room + LONGEST;
-  }
-  va_list arguments;
-  va_start(arguments, format);
-  l->length += (size_t)vsnprintf(l->text + l->length, LONGEST, format, arguments);
-  va_end(arguments);
+static void assign_number(taken *t, const char *path, double value) {
+  t->numbers[t->count] = value;
+  t->all[t->count] =
+      (study_assignment){.path = path, .numbers = &t->numbers[t->count], .count = 1, .what = ASSIGN_NUMBER};
+  t->count++;
 }
 
-static void add(assignments *a, line *l) {
-  a->failed = a->failed || l->failed || !l->text;
-  a->all[a->count++] = l->text ? l->text : strdup("");
-}
-
-static void append_list(line *l, const double *numbers, size_t count) {
-  append(l, "[");
-  for (size_t i = 0; i < count; i++)
-    append(l, "%s%.17g", i ? ", " : "", numbers[i]);
-  append(l, "]");
-}
-
-static void assign_number(assignments *a, const char *name, double value) {
-  line l = {0};
-  append(&l, "%s=%.17g", name, value);
-  add(a, &l);
-}
-
-static void assign_list(assignments *a, const char *name, const double *numbers, size_t count) {
-  line l = {0};
-  append(&l, "%s=", name);
-  append_list(&l, numbers, count);
-  add(a, &l);
+static void assign_list(taken *t, const char *path, const double *numbers, size_t count) {
+  t->all[t->count++] = (study_assignment){.path = path, .numbers = numbers, .count = count, .what = ASSIGN_LIST};
 }
 
 /* --- what a study takes --- */
@@ -85,7 +43,7 @@ static bool is_swept(const study *s, const char *name) {
 
 /* Where the branch starts, of a parameter that did not vary in the result: at the motion's own period or energy, at
  * what the study says, or else at the number of its model. */
-static void assign_from(assignments *a, const study *s, const study_values *v, const result_motion *m) {
+static void assign_from(taken *a, const study *s, const study_values *v, const result_motion *m) {
   const study_parameter *followed = family_followed(s);
   if (!followed)
     return;
@@ -110,7 +68,7 @@ static bool is_done_with(const study *s, const char *name) {
 }
 
 /* The numbers that vary in the result, but those that vary in the study. */
-static void assign_numbers(assignments *a, const study *s, const study_values *v, const result_motion *m) {
+static void assign_numbers(taken *a, const study *s, const study_values *v, const result_motion *m) {
   const char *followed = family_followed(s) ? family_followed(s)->name : "";
   bool known = false;
   for (size_t i = 0; i < m->number_count; i++) {
@@ -134,7 +92,7 @@ static bool is_fixed(const study *s, study_key key, const char *name, const resu
 }
 
 /* The numbers of the motion that the model does not give: its period, and its energy where the study has one. */
-static void assign_period(assignments *a, const study *s, const study_values *v, const result_motion *m) {
+static void assign_period(taken *a, const study *s, const study_values *v, const result_motion *m) {
   const bool forced = strcmp(value_word(v, KEY_ORBIT_MOTION), "forced") == 0;
   const bool multiple = value_number(v, KEY_ORBIT_FORCING_PERIODS, 0) > 0;
   if (!forced && !multiple && is_fixed(s, KEY_ORBIT_PERIOD, "orbit.period", m))
@@ -178,7 +136,7 @@ static void sort_sequence(const result_motion *m, hits *sequence) {
   }
 }
 
-static void assign_impacts(assignments *a, const study_values *v, const result_motion *m, double *store) {
+static void assign_impacts(taken *a, const study_values *v, const result_motion *m, double *store) {
   const size_t n = m->impact_count + 1;
   hits lists[3];
   for (size_t i = 0; i < 3; i++)
@@ -193,27 +151,14 @@ static void assign_impacts(assignments *a, const study_values *v, const result_m
   assign_list(a, "orbit.times", lists[2].times, lists[2].count);
 }
 
-static void assign_state(assignments *a, const result_motion *m) {
-  line l = {0};
-  append(&l, "start={q: ");
-  append_list(&l, m->q, m->particles);
-  append(&l, ", v: ");
-  append_list(&l, m->v, m->particles);
-  append(&l, "}");
-  add(a, &l);
-  l = (line){0};
-  append(&l, "restart={}");
-  add(a, &l);
-  if (a->failed)
-    return;
-  l = (line){0};
-  append(&l, "orbit.excited=[]");
-  add(a, &l);
-  if (a->failed)
-    return;
-  l = (line){0};
-  append(&l, "orbit.mode=null");
-  add(a, &l);
+/* The state takes the place of every other first guess. */
+static void assign_state(taken *a, const result_motion *m) {
+  a->all[a->count++] = (study_assignment){.path = "start", .what = ASSIGN_EMPTY};
+  assign_list(a, "start.q", m->q, m->particles);
+  assign_list(a, "start.v", m->v, m->particles);
+  a->all[a->count++] = (study_assignment){.path = "restart", .what = ASSIGN_EMPTY};
+  assign_list(a, "orbit.excited", NULL, 0);
+  a->all[a->count++] = (study_assignment){.path = "orbit.mode", .what = ASSIGN_NULL};
 }
 
 /* A study names particles: of one between a floor and a wall it means the floor. */
@@ -244,52 +189,36 @@ static int read_motion(const study *s, const study_values *v, result_motion *m, 
 }
 
 /* Reads the study once more, with what it takes added to its assignments. */
-static int parse_again(const study *s, const study_values *v, const result_motion *m, assignments *a, study **out,
+static int parse_again(const study *s, const study_values *v, const result_motion *m, study_source from, study **out,
                        message *why) {
+  taken t = {.count = 0};
+  char place[224];
   double *store = calloc(6 * (m->impact_count + 1), sizeof *store);
-  if (store) {
-    assign_state(a, m);
-    assign_numbers(a, s, v, m);
-    assign_period(a, s, v, m);
-    assign_impacts(a, v, m, store);
-  }
-  const int code = store && !a->failed ? study_parse(&(study_source){.schema = &studies,
-                                                                     .name = study_name(s),
-                                                                     .text = a->text,
-                                                                     .length = a->length,
-                                                                     .sets = a->all,
-                                                                     .set_count = a->count},
-                                                     out, why)
-                                       : refuse(why, EXIT_RUN, "%s: no memory for its start", study_name(s));
+  if (!store)
+    return refuse(why, EXIT_RUN, "%s: no memory for its start", study_name(s));
+  assign_state(&t, m);
+  assign_numbers(&t, s, v, m);
+  assign_period(&t, s, v, m);
+  assign_impacts(&t, v, m, store);
+  snprintf(place, sizeof place, "restart from %.200s", value_word(v, KEY_RESTART_FILE));
+  from.assigned_by = place;
+  from.assignments = t.all;
+  from.assignment_count = t.count;
+  const int code = study_parse(&from, out, why);
   free(store);
   return code;
 }
 
-static int resolve(const study *s, assignments *a, study **out, message *why) {
-  result_motion m = {0};
-  study_values *v = study_values_create(s);
-  int code = v ? read_motion(s, v, &m, why) : refuse(why, EXIT_RUN, "%s: no memory for its values", study_name(s));
-  if (!code)
-    code = parse_again(s, v, &m, a, out, why);
-  if (v)
-    study_values_destroy(&v);
-  result_motion_clear(&m);
-  return code;
-}
-
 /* Exchanges a study that restarts for the complete one. */
-static int complete(study **s, const char *text, size_t length, const char *const *sets, size_t set_count,
-                    message *why) {
+static int complete(study **s, const study_source *from, message *why) {
   study *resolved = NULL;
-  assignments a = {.text = text, .length = length, .given = set_count};
-  a.all = calloc(set_count + MOST_ADDED + RESULT_MOST_NUMBERS, sizeof *a.all);
-  for (; a.all && a.count < set_count; a.count++)
-    a.all[a.count] = sets[a.count];
-  const int code =
-      a.all ? resolve(*s, &a, &resolved, why) : refuse(why, EXIT_RUN, "%s: no memory for its start", study_name(*s));
-  for (size_t i = a.given; i < a.count; i++)
-    free((char *)(uintptr_t)a.all[i]);
-  free(a.all);
+  result_motion m = {0};
+  study_values *v = study_values_create(*s);
+  int code = v ? read_motion(*s, v, &m, why) : refuse(why, EXIT_RUN, "%s: no memory for its values", study_name(*s));
+  if (!code)
+    code = parse_again(*s, v, &m, *from, &resolved, why);
+  study_values_destroy(&v);
+  result_motion_clear(&m);
   study_destroy(s);
   *s = resolved;
   return code;
@@ -297,16 +226,14 @@ static int complete(study **s, const char *text, size_t length, const char *cons
 
 int restart_read_study(const char *path, const char *const *sets, size_t set_count, study **out, message *why) {
   char *text = NULL;
-  size_t length = 0;
+  study_source from = {.schema = &studies, .name = path, .sets = sets, .set_count = set_count};
   *out = NULL;
-  int code = study_read_file(path, &text, &length, why);
+  int code = study_read_file(path, &text, &from.length, why);
+  from.text = text;
   if (!code)
-    code = study_parse(
-        &(study_source){
-            .schema = &studies, .name = path, .text = text, .length = length, .sets = sets, .set_count = set_count},
-        out, why);
+    code = study_parse(&from, out, why);
   if (!code && branch_restarts(*out))
-    code = complete(out, text, length, sets, set_count, why);
+    code = complete(out, &from, why);
   free(text);
   return code;
 }

@@ -9,6 +9,7 @@
 #include <yaml.h>
 
 #include "source.h"
+#include "study.h"
 
 enum { DOCUMENT_ROOT = 1 };
 
@@ -72,6 +73,9 @@ int document_emit(const document *d, char **text, message *why);
 
 /** @param assignment  "path=value", copied. @returns 0, EXIT_USAGE, or EXIT_RUN when out of memory. */
 int document_assign(document *d, const char *assignment, message *why);
+
+/** The same for a value of the program. @param place  what messages about it begin with */
+int document_assign_value(document *d, const char *place, const study_assignment *value, message *why);
 
 /* What a text must pass before its document tree is built.
  *

@@ -215,6 +215,8 @@ static int fill(study *s, document *d, const study_source *from, message *why) {
   int code = check_root(s, d, why);
   for (size_t i = 0; i < from->set_count && !code; i++)
     code = document_assign(d, from->sets[i], why);
+  for (size_t i = 0; i < from->assignment_count && !code; i++)
+    code = document_assign_value(d, from->assigned_by, &from->assignments[i], why);
   if (!code)
     code = read_tree(s, d, why);
   s->digest = code ? 0 : compute_digest(s);

@@ -41,6 +41,14 @@ typedef struct study_sweep {
  *  @returns 0, EXIT_FILES when it cannot be read, EXIT_USAGE when it is larger than STUDY_MAX_BYTES. */
 int study_read_file(const char *path, char **text, size_t *length, message *why);
 
+/** What the program puts into a study before it is checked, in place of what the study says there. */
+typedef struct study_assignment {
+  const char *path;      /* "orbit.period", borrowed */
+  const double *numbers; /* [count] */
+  size_t count;
+  enum { ASSIGN_NUMBER, ASSIGN_LIST, ASSIGN_NULL, ASSIGN_EMPTY /* a section without keys */ } what;
+} study_assignment;
+
 /** A study to be read. */
 typedef struct study_source {
   const schema *schema; /* borrowed, must outlive the study */
@@ -51,6 +59,9 @@ typedef struct study_source {
                               before validation, so any key can be set, also `sweep[0].points`. Messages about them
                               begin with `--set path=value:` */
   size_t set_count;
+  const char *assigned_by;             /* what messages about the following begin with, "restart" */
+  const study_assignment *assignments; /* [assignment_count] applied after `sets` */
+  size_t assignment_count;
 } study_source;
 
 /** Parses and validates a study.
