@@ -6,8 +6,8 @@ import json
 import re
 import subprocess
 
-ORDER = ["base", "study", "model", "kind", "run", "result", "command"]
-FORBIDDEN = {("run", "model"), ("run", "kind"), ("result", "model"), ("result", "kind")}  # they know no kind of study
+ORDER = ["base", "study", "run", "result", "model", "kind", "command"]
+FORBIDDEN = {("model", "run"), ("model", "result"), ("kind", "run")}  # what tasks compute knows no rank and no checkpoint
 KINDS = {  # what the folder of a kind uses of others
     "family": {"trajectory"}, "orbits": {"family", "trajectory"}, "trajectory": set(),
     "branch": {"family", "orbits"}, "grazing": {"family"}, "diagram": {"family", "grazing"}}  # fmt: skip

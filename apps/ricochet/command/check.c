@@ -7,7 +7,6 @@
 #include "../kind/kind.h"
 #include "../kind/machine.h"
 #include "command.h"
-#include "restart.h"
 
 static const char help[] =
     "usage: ricochet check STUDY.yaml [--set KEY=VALUE ...]\n"
@@ -36,7 +35,7 @@ static void print_plan(const study *s, const kind_plan *plan) {
 static int check_study(const char *path, const char *const *sets, size_t set_count, message *why) {
   study *s = NULL;
   kind_plan plan;
-  int code = restart_read_study(path, sets, set_count, &s, why);
+  int code = kind_read_study(path, sets, set_count, &s, why);
   if (!code)
     code = kind_of(s)->plan(s, &plan, why);
   if (!code)

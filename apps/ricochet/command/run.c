@@ -10,7 +10,6 @@
 #include "command.h"
 #include "compute.h"
 #include "output.h"
-#include "restart.h"
 
 static const char help[] =
     "usage: ricochet run STUDY.yaml [options]\n"
@@ -53,7 +52,7 @@ typedef struct run {
 static int load(run *r, message *why) {
   const run_options *o = &r->options;
   const bool first = ranks_rank() == 0;
-  int code = first ? restart_read_study(o->study_path, o->sets, o->set_count, &r->study, why) : 0;
+  int code = first ? kind_read_study(o->study_path, o->sets, o->set_count, &r->study, why) : 0;
   code = ranks_agree(code, why);
   if (code)
     return code;

@@ -11,6 +11,7 @@
 
 #include "keys.h"
 #include "base/table.h"
+#include "result/result.h"
 
 enum { KIND_MOST_TAILS = 6, KIND_MOST_EXTRAS = 2 };
 
@@ -75,10 +76,21 @@ struct kind {
    *  @returns 0, EXIT_RUN, EXIT_FILES; EXIT_STOPPED when the poll stopped it */
   int (*extra)(const study *s, const kind_plan *plan, const row_source *done, ric_poll poll, extra_rows *extra,
                message *why);
+  /** What `show` says of a result in sentences; NULL: nothing. */
+  result_card *show;
+  /** Exchanges a study that refers to an earlier result for the complete one; NULL: none does.
+   *  @param from  that the study was read from */
+  int (*resolve)(study **s, const study_source *from, message *why);
 };
 
 /** The schema of studies: every kind, every type of model, and their keys. */
 extern const schema studies;
+
+/** Reads a study file, and what it refers to. @returns as study_read_file, study_parse and `resolve` */
+int kind_read_study(const char *path, const char *const *sets, size_t set_count, study **out, message *why);
+
+/** What the kind of this name says of its results; NULL for nothing, and for no kind. */
+result_card *kind_card(const char *name);
 
 /** What evaluates a study. */
 const kind *kind_of(const study *s);

@@ -1,6 +1,7 @@
 /* The list of kinds, and the schema of studies. */
 #include "kind.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 #include "study/keys.h"
@@ -43,6 +44,25 @@ const schema studies = {.keys = keys,
                         .kind = KEY_KIND,
                         .model = KEY_MODEL_TYPE,
                         .introduction = chapter_introduction};
+
+int kind_read_study(const char *path, const char *const *sets, size_t set_count, study **out, message *why) {
+  char *text = NULL;
+  study_source from = {.schema = &studies, .name = path, .sets = sets, .set_count = set_count};
+  *out = NULL;
+  int code = study_read_file(path, &text, &from.length, why);
+  from.text = text;
+  if (!code)
+    code = study_parse(&from, out, why);
+  if (!code && kind_of(*out)->resolve)
+    code = kind_of(*out)->resolve(out, &from, why);
+  free(text);
+  return code;
+}
+
+result_card *kind_card(const char *name) {
+  const kind *found = (const kind *)schema_choice_of(kinds, name);
+  return found ? found->show : NULL;
+}
 
 const kind *kind_of(const study *s) {
   const kind *found = (const kind *)study_kind_choice(s);

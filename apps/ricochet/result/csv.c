@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "hdf5_call.h"
 #include "reader.h"
 #include "text_out.h"
 
@@ -30,7 +31,7 @@ typedef struct csv_owner {
 } csv_owner;
 
 typedef struct csv {
-  const place *at;
+  const file_place *at;
   hid_t file;
   char name[256];   /* of the group asked for, "" for none */
   const char *axis; /* asked for, or NULL */
@@ -80,7 +81,7 @@ static int open_group(csv *c) {
   reader_names names;
   char known[512] = "";
   bool found = false;
-  int code = reader_list(c->at, c->file, H5I_GROUP, &names);
+  int code = reader_list(c->at, c->file, true, &names);
   for (size_t i = 0; !code && !found && i < names.count; i++) {
     size_t used = strlen(known);
     snprintf(known + used, sizeof known - used, "%s%s", used ? ", " : "", names.at[i]);
@@ -220,7 +221,7 @@ static int print_columns(csv *c) {
 }
 
 int result_show_csv(const char *path, const char *group, message *why) {
-  const place at = {path, why};
+  const file_place at = {path, why};
   csv c = {.at = &at};
   int code = reader_open(&at, path, &c.file);
   if (code)

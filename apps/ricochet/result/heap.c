@@ -49,7 +49,7 @@ static size_t find_heaps(const skeleton_image *image, heap *heaps) {
   return count;
 }
 
-static int put(const place *at, hid_t file, size_t count, const heap *heaps) {
+static int put(const file_place *at, hid_t file, size_t count, const heap *heaps) {
   int code = 0;
   hid_t space = H5I_INVALID_HID, attribute = H5I_INVALID_HID;
   HDF5_TRY(at, space = H5Screate_simple(2, (const hsize_t[2]){count, 3}, NULL), "write %s", attribute_name);
@@ -61,7 +61,7 @@ out:
   return hdf5_close(at, space, code);
 }
 
-int heap_put_checksums(const place *at, hid_t file, const skeleton_image *image) {
+int heap_put_checksums(const file_place *at, hid_t file, const skeleton_image *image) {
   size_t count = find_heaps(image, NULL);
   heap *heaps = calloc(count + 1, sizeof *heaps);
   if (!heaps)
@@ -74,7 +74,7 @@ int heap_put_checksums(const place *at, hid_t file, const skeleton_image *image)
 
 /* --- checking --- */
 
-static int check_one(const place *at, FILE *from, const heap *h) {
+static int check_one(const file_place *at, FILE *from, const heap *h) {
   bool good = false;
   unsigned char *bytes = h->address >= 0 && h->size > 0 ? malloc((size_t)h->size) : NULL;
   if (bytes && fseeko(from, (off_t)h->address, SEEK_SET) == 0)
@@ -85,7 +85,7 @@ static int check_one(const place *at, FILE *from, const heap *h) {
                        at->path, (long long)h->address);
 }
 
-static int check_all(const place *at, const char *path, const heap *heaps, size_t count) {
+static int check_all(const file_place *at, const char *path, const heap *heaps, size_t count) {
   FILE *from = fopen(path, "rb");
   if (!from)
     return refuse(at->why, EXIT_FILES, "%s: cannot open it again", at->path);
@@ -96,7 +96,7 @@ static int check_all(const place *at, const char *path, const heap *heaps, size_
   return code;
 }
 
-int heap_check(const place *at, hid_t file, const char *path) {
+int heap_check(const file_place *at, hid_t file, const char *path) {
   int code = 0;
   hid_t attribute = H5I_INVALID_HID, space = H5I_INVALID_HID;
   heap *heaps = NULL;

@@ -11,9 +11,9 @@
 #include "skeleton.h"
 
 /** Stores the checksums of the heaps in `image` in the file that was made of it. */
-int heap_put_checksums(const place *at, hid_t file, const skeleton_image *image);
+int heap_put_checksums(const file_place *at, hid_t file, const skeleton_image *image);
 
 /** Compares the heaps of the file at `path`, open as `file`, with their checksums. */
-int heap_check(const place *at, hid_t file, const char *path);
+int heap_check(const file_place *at, hid_t file, const char *path);
 
 #endif

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "attribute.h"
-#include "cards.h"
+#include "hdf5_call.h"
 #include "reader.h"
 #include "text_out.h"
 
@@ -19,7 +19,7 @@ enum {
 
 /* --- the file as a whole --- */
 
-static int show_line(const place *at, hid_t object, const char *label, const char *attribute) {
+static int show_line(const file_place *at, hid_t object, const char *label, const char *attribute) {
   char *text;
   int code = attribute_text(at, object, attribute, &text);
   if (!code && text[0])
@@ -28,7 +28,7 @@ static int show_line(const place *at, hid_t object, const char *label, const cha
   return code;
 }
 
-static int show_heading(const place *at, hid_t file) {
+static int show_heading(const file_place *at, hid_t file) {
   char version[64], time[64], sha[64], *compiler = NULL;
   int64_t layout;
   int code = attribute_text_into(at, file, "creator_version", version, sizeof version);
@@ -52,7 +52,7 @@ static int show_heading(const place *at, hid_t file) {
   return code ? code : show_line(at, file, "with", "libraries");
 }
 
-static int show_run(const place *at, hid_t file) {
+static int show_run(const file_place *at, hid_t file) {
   char host[256];
   int64_t ranks, computed, resumed;
   double seconds;
@@ -76,7 +76,7 @@ static int show_run(const place *at, hid_t file) {
 
 /* --- sweeps --- */
 
-static int range_of(const place *at, const reader_set *s, double *low, double *high) {
+static int range_of(const file_place *at, const reader_set *s, double *low, double *high) {
   double values[BLOCK];
   *low = INFINITY;
   *high = -INFINITY;
@@ -94,7 +94,7 @@ static int range_of(const place *at, const reader_set *s, double *low, double *h
 }
 
 /* Number of points of each sweep, in the order of the data sets. */
-static int read_grid(const place *at, hid_t file, size_t count, int64_t *grid) {
+static int read_grid(const file_place *at, hid_t file, size_t count, int64_t *grid) {
   int code = 0;
   hid_t attribute = H5I_INVALID_HID, space = H5I_INVALID_HID;
   HDF5_TRY(at, attribute = H5Aopen_by_name(file, "sweep", "grid", H5P_DEFAULT, H5P_DEFAULT), "read the grid of /sweep");
@@ -109,7 +109,7 @@ out:
   return hdf5_close(at, attribute, code);
 }
 
-static int show_sweeps(const place *at, hid_t file) {
+static int show_sweeps(const file_place *at, hid_t file) {
   reader_group g;
   int64_t grid[STUDY_MAX_SWEEPS];
   int code = reader_group_open(at, file, "sweep", &g);
@@ -185,7 +185,7 @@ static void show_sets(const reader_group *g) {
 }
 
 /* "outcome: admissible 14, grazing 1" */
-static int show_counts(const place *at, const reader_set *s) {
+static int show_counts(const file_place *at, const reader_set *s) {
   uint64_t counts[256] = {0};
   unsigned char values[BLOCK];
   for (hsize_t first = 0; first < s->shape[0]; first += BLOCK) {
@@ -214,7 +214,7 @@ static int show_counts(const place *at, const reader_set *s) {
 
 enum { CELL = 128 }; /* letters shown of a value */
 
-static int read_cells(const place *at, const reader_set *s, hsize_t rows, char (*cells)[CELL]) {
+static int read_cells(const file_place *at, const reader_set *s, hsize_t rows, char (*cells)[CELL]) {
   unsigned char *values = calloc(rows + 1, s->value_bytes);
   if (!values)
     return refuse(at->why, EXIT_RUN, "%s: out of memory", at->path);
@@ -239,7 +239,7 @@ static void show_cells(const reader_set *const *columns, size_t count, hsize_t r
   }
 }
 
-static int show_rows(const place *at, const reader_group *g, const char *axis) {
+static int show_rows(const file_place *at, const reader_group *g, const char *axis) {
   const reader_set **columns = calloc(g->count + 1, sizeof *columns);
   size_t count = 0;
   for (size_t k = 0; columns && k < g->count; k++)
@@ -260,7 +260,7 @@ static int show_rows(const place *at, const reader_group *g, const char *axis) {
   return code;
 }
 
-static int show_group(const place *at, hid_t file, const char *name) {
+static int show_group(const file_place *at, hid_t file, const char *name) {
   reader_group g;
   char shown[256] = "task", axis[256];
   int code = reader_group_open(at, file, name, &g);
@@ -280,9 +280,9 @@ static int show_group(const place *at, hid_t file, const char *name) {
   return code;
 }
 
-static int show_groups(const place *at, hid_t file) {
+static int show_groups(const file_place *at, hid_t file) {
   reader_names names;
-  int code = reader_list(at, file, H5I_GROUP, &names);
+  int code = reader_list(at, file, true, &names);
   for (size_t i = 0; !code && i < names.count; i++)
     if (strcmp(names.at[i], "sweep") != 0)
       code = show_group(at, file, names.at[i]);
@@ -290,8 +290,19 @@ static int show_groups(const place *at, hid_t file) {
   return code;
 }
 
-int result_show(const char *path, message *why) {
-  const place at = {path, why};
+static int show_cards(const file_place *at, hid_t file, result_card *(*card_of)(const char *group)) {
+  reader_names names;
+  int code = reader_list(at, file, true, &names);
+  for (size_t i = 0; !code && i < names.count; i++) {
+    result_card *card = card_of(names.at[i]);
+    code = card ? card(at, file) : 0;
+  }
+  reader_names_clear(&names);
+  return code;
+}
+
+int result_show(const char *path, result_card *(*card_of)(const char *group), message *why) {
+  const file_place at = {path, why};
   hid_t file;
   int code = reader_open(&at, path, &file);
   if (code)
@@ -302,9 +313,7 @@ int result_show(const char *path, message *why) {
   if (!code)
     code = show_sweeps(&at, file);
   if (!code)
-    code = grazing_cards_show(&at, file);
-  if (!code)
-    code = diagram_card_show(&at, file);
+    code = show_cards(&at, file, card_of);
   if (!code)
     code = show_groups(&at, file);
   return hdf5_close(&at, file, text_out_finish(code, why));

@@ -34,7 +34,7 @@ hid_t skeleton_access(void) {
 /* --- groups --- */
 
 /* Opens a group, which an earlier table of the same group may have made. */
-static int open_group(const place *at, hid_t file, const char *name, hid_t *group) {
+static int open_group(const file_place *at, hid_t file, const char *name, hid_t *group) {
   int code = 0;
   hid_t list = H5I_INVALID_HID;
   htri_t exists;
@@ -49,7 +49,7 @@ out:
   return hdf5_close(at, list, code);
 }
 
-static int create_table(const place *at, hid_t file, const result_table *t) {
+static int create_table(const file_place *at, hid_t file, const result_table *t) {
   hid_t group = H5I_INVALID_HID;
   int code = open_group(at, file, t->layout->group, &group);
   for (size_t k = 0; !code && k < t->layout->column_count; k++)
@@ -58,7 +58,7 @@ static int create_table(const place *at, hid_t file, const result_table *t) {
 }
 
 /* The grid of the sweeps: their names, and the number of points of each in order. */
-static int put_grid(const place *at, hid_t file, const study *s) {
+static int put_grid(const file_place *at, hid_t file, const study *s) {
   hid_t group = H5I_INVALID_HID;
   int64_t grid[STUDY_MAX_SWEEPS];
   char names[STUDY_MAX_SWEEPS * (sizeof(study_sweep) + 1)] = "";
@@ -85,7 +85,7 @@ static void utc_text(time_t at, char *text, size_t size) {
     snprintf(text, size, "unknown");
 }
 
-static int put_root(const place *at, hid_t file, const result_header *header) {
+static int put_root(const file_place *at, hid_t file, const result_header *header) {
   char digest[17], now[32];
   snprintf(digest, sizeof digest, "%016llx", (unsigned long long)study_digest(header->study));
   utc_text(time(NULL), now, sizeof now);
@@ -106,7 +106,7 @@ static int put_root(const place *at, hid_t file, const result_header *header) {
 }
 
 /* Everything that differs between two runs of the same study sits here, and only here (but for file_time, command). */
-static int put_run(const place *at, hid_t file, const result_header *header) {
+static int put_run(const file_place *at, hid_t file, const result_header *header) {
   char host[256] = "unknown", started[32];
   hid_t group = H5I_INVALID_HID;
   if (gethostname(host, sizeof host - 1) != 0)
@@ -132,7 +132,7 @@ static int put_run(const place *at, hid_t file, const result_header *header) {
 
 /* --- the file --- */
 
-static int fill(const place *at, hid_t file, const plan *p) {
+static int fill(const file_place *at, hid_t file, const plan *p) {
   int code = put_root(at, file, p->header);
   for (size_t i = 0; !code && i < p->scale_count; i++)
     code = data_set_create_scale(at, file, &p->scales[i]);
@@ -181,7 +181,7 @@ static herr_t user_keep(void *user) {
   return 0;
 }
 
-static int create_in_memory(const place *at, skeleton_image *image, hid_t *file) {
+static int create_in_memory(const file_place *at, skeleton_image *image, hid_t *file) {
   int code = 0;
   hid_t access = H5I_INVALID_HID, list = H5I_INVALID_HID;
   enum { GROWTH = 1 << 16 }; /* bytes by which the file grows */
@@ -197,7 +197,7 @@ out:
   return hdf5_close(at, access, code);
 }
 
-int skeleton_make(const plan *p, const place *at, skeleton_image *image) {
+int skeleton_make(const plan *p, const file_place *at, skeleton_image *image) {
   hid_t file = H5I_INVALID_HID;
   *image = (skeleton_image){NULL, 0};
   int code = create_in_memory(at, image, &file);

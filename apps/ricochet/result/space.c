@@ -34,7 +34,7 @@ static int reserve(int handle, uint64_t bytes) {
   return failed == EINVAL || failed == EOPNOTSUPP ? 0 : failed; /* a file system that cannot reserve: hope */
 }
 
-static int write_image(const plan *p, const place *at, const skeleton_image *image) {
+static int write_image(const plan *p, const file_place *at, const skeleton_image *image) {
   int handle = open(p->partial, O_RDWR | O_CREAT | O_TRUNC, 0666);
   if (handle < 0)
     return refuse(at->why, EXIT_FILES, "%s: cannot create it: %s", at->path, strerror(errno));
@@ -53,7 +53,7 @@ static int write_image(const plan *p, const place *at, const skeleton_image *ima
 /* --- layout of the chunks --- */
 
 /* The first write to a data set lays all its chunks out; one value is enough. */
-static int touch(const place *at, hid_t file, const table *t, const column *c) {
+static int touch(const file_place *at, hid_t file, const table *t, const column *c) {
   int code = 0;
   hid_t set = H5I_INVALID_HID, in_file = H5I_INVALID_HID, in_memory = H5I_INVALID_HID, type = H5I_INVALID_HID;
   char name[512];
@@ -77,7 +77,7 @@ out:
   return code;
 }
 
-static int touch_table(const place *at, hid_t file, const result_table *t) {
+static int touch_table(const file_place *at, hid_t file, const result_table *t) {
   int code = 0;
   for (size_t k = 0; !code && k < t->layout->column_count; k++)
     if (t->rows > 0 && column_values(&t->layout->columns[k]) > 0)
@@ -85,7 +85,7 @@ static int touch_table(const place *at, hid_t file, const result_table *t) {
   return code;
 }
 
-static int lay_out_chunks(const plan *p, const place *at, const skeleton_image *image) {
+static int lay_out_chunks(const plan *p, const file_place *at, const skeleton_image *image) {
   int code = 0;
   hid_t access = H5I_INVALID_HID, file = H5I_INVALID_HID;
   HDF5_TRY(at, access = skeleton_access(), "lay it out");
@@ -99,7 +99,7 @@ out:
   return hdf5_close(at, access, code);
 }
 
-int space_create(const plan *p, const place *at) {
+int space_create(const plan *p, const file_place *at) {
   skeleton_image image;
   int code = skeleton_make(p, at, &image);
   if (!code)

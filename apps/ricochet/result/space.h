@@ -12,6 +12,6 @@
 #include "plan.h"
 
 /** Creates `p->partial` on this process alone, all data sets laid out and filled with zeros. */
-int space_create(const plan *p, const place *at);
+int space_create(const plan *p, const file_place *at);
 
 #endif

@@ -51,14 +51,14 @@ static herr_t look_at_object(hid_t root, const char *name, const H5O_info_t *inf
 
 /* Visits all groups, data sets and named types and reads their attributes, so that HDF5 looks at the checksums of all
  * metadata, also of parts that nobody asks for. Attributes with references are left to who checks the axes. */
-static int objects_check(const place *at, hid_t file) {
+static int objects_check(const file_place *at, hid_t file) {
   herr_t status = H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_NATIVE, look_at_object, NULL, H5O_INFO_ALL);
   return status < 0 ? hdf5_refuse(at, "read all of it") : 0;
 }
 
 /* One verification under way. */
 typedef struct verifier {
-  const place *at;
+  const file_place *at;
   hid_t file;
   int part, parts;
   uint64_t turn; /* slabs seen so far; every parts-th is ours */
@@ -175,7 +175,7 @@ static int check_sets(verifier *v, const char *group_name) {
   hid_t group = H5Gopen2(v->file, group_name, H5P_DEFAULT);
   if (group < 0)
     return hdf5_refuse(v->at, "open %s", group_name);
-  int code = reader_list(v->at, group, H5I_DATASET, &names);
+  int code = reader_list(v->at, group, false, &names);
   for (size_t i = 0; !code && i < names.count; i++) {
     char name[1024];
     bool root = strcmp(group_name, "/") == 0;
@@ -188,7 +188,7 @@ static int check_sets(verifier *v, const char *group_name) {
 
 static int check_groups(verifier *v) {
   reader_names names;
-  int code = reader_list(v->at, v->file, H5I_GROUP, &names);
+  int code = reader_list(v->at, v->file, true, &names);
   for (size_t i = 0; !code && i < names.count; i++)
     code = check_sets(v, names.at[i]);
   reader_names_clear(&names);
@@ -236,7 +236,7 @@ static int check_expected(const verifier *v, const plan *expected) {
   return code;
 }
 
-int verify_part(const place *at, const char *path, const plan *expected, int part, int parts) {
+int verify_part(const file_place *at, const char *path, const plan *expected, int part, int parts) {
   verifier v = {.at = at, .part = part, .parts = parts};
   int code = reader_open(at, path, &v.file);
   if (code)
@@ -256,12 +256,12 @@ int verify_part(const place *at, const char *path, const plan *expected, int par
 }
 
 int result_verify(const char *path, message *why) {
-  const place at = {path, why};
+  const file_place at = {path, why};
   return verify_part(&at, path, NULL, 0, 1);
 }
 
 int result_study_digest(const char *path, uint64_t *digest, message *why) {
-  const place at = {path, why};
+  const file_place at = {path, why};
   char text[32], *end;
   hid_t file;
   int code = reader_open(&at, path, &file);

@@ -10,6 +10,6 @@
  *  `parts`-th slab of data.
  *  @param path  of the file to open; `at` names the one for messages
  *  @param expected  what the file must hold at least, by name and shape; NULL when nothing is known about it */
-int verify_part(const place *at, const char *path, const plan *expected, int part, int parts);
+int verify_part(const file_place *at, const char *path, const plan *expected, int part, int parts);
 
 #endif

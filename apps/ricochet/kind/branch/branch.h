@@ -91,5 +91,7 @@ void branch_lay_out(const study_values *v, const char *followed, const char *tra
 
 /** Whether a study of kind `branch` says that it starts from a result. */
 bool branch_restarts(const study *s);
+/** Exchanges it for the complete one (kind.h). */
+int branch_resolve(study **s, const study_source *from, message *why);
 
 #endif

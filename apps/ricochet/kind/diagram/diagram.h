@@ -28,6 +28,9 @@ typedef struct diagram_row {
   double distance;
 } diagram_row;
 
+/** What `show` says of a result (kind.h). */
+result_card diagram_show, basin_show;
+
 /* Its keys (schema_choice). */
 int diagram_complete(study *s, const document *d, message *why);
 bool diagram_wants(const study *s, const document *d, study_key key);

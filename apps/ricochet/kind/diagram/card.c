@@ -1,11 +1,12 @@
-#include "cards.h"
+/* What `show` says of the attractors of diagrams and basins, in sentences. */
+#include "diagram.h"
 
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "reader.h"
+#include "result/reader.h"
 
 enum {
   BLOCK = 4096,       /* rows read at a time */
@@ -16,35 +17,28 @@ enum {
   CELL = 128
 };
 
-static const reader_set *find(const reader_group *g, const char *name) {
-  for (size_t i = 0; i < g->count; i++)
-    if (strcmp(g->sets[i].name, name) == 0)
-      return &g->sets[i];
-  return NULL;
-}
-
 static bool is_column(const reader_set *s, reader_type type) {
   return s && s->type == type && s->rank == 1;
 }
 
 /* --- how many tasks have which period ----------------------------------------------------------------------------- */
 
-static int count_periods(const place *at, const reader_set *periods, uint64_t *counts) {
+static int count_periods(const file_place *at, const reader_set *periods, uint64_t *counts) {
   int64_t values[BLOCK];
-  for (hsize_t first = 0; first < periods->shape[0]; first += BLOCK) {
-    const hsize_t count = periods->shape[0] - first < BLOCK ? periods->shape[0] - first : BLOCK;
+  for (uint64_t first = 0; first < periods->shape[0]; first += BLOCK) {
+    const uint64_t count = periods->shape[0] - first < BLOCK ? periods->shape[0] - first : BLOCK;
     const int code = reader_rows(at, periods, first, count, (unsigned char *)values);
     if (code)
       return code;
-    for (hsize_t i = 0; i < count; i++)
+    for (uint64_t i = 0; i < count; i++)
       counts[values[i] < 0 ? 0 : values[i] <= LONGEST ? values[i] : LONGEST + 1]++;
   }
   return 0;
 }
 
 /* "periods: 4 in 37, 5 in 191; longer ones in 3; none in 369 of 600 tasks" */
-static int print_periods(const place *at, const reader_group *g) {
-  const reader_set *periods = find(g, "attractor_period");
+static int print_periods(const file_place *at, const reader_group *g) {
+  const reader_set *periods = reader_find(g, "attractor_period");
   uint64_t counts[LONGEST + 2] = {0}, longer = 0;
   int shown = 0;
   if (!is_column(periods, READER_INTEGER))
@@ -63,32 +57,18 @@ static int print_periods(const place *at, const reader_group *g) {
     printf("%s longer ones in %" PRIu64, shown ? ";" : "", longer);
   if (counts[0] > 0)
     printf("%s none in %" PRIu64, shown || longer > 0 ? ";" : "", counts[0]);
-  printf(" of %" PRIu64 " tasks\n", (uint64_t)periods->shape[0]);
+  printf(" of %" PRIu64 " tasks\n", periods->shape[0]);
   return 0;
 }
 
 /* --- rows of windows and of attractors ---------------------------------------------------------------------------- */
 
-/* A value of a row as text; "" where there is none. */
-static int cell(const place *at, const reader_group *g, const char *name, hsize_t row, char *text) {
-  const reader_set *s = find(g, name);
-  unsigned char *value = s && s->rank == 1 && row < s->shape[0] ? calloc(1, s->value_bytes + 1) : NULL;
-  int code = 0;
-  *text = '\0';
-  if (value)
-    code = reader_rows(at, s, row, 1, value);
-  if (value && !code)
-    reader_value(s, value, DIGITS, text, CELL);
-  free(value);
-  return code;
-}
-
 /* "  task 181: period 5, 1 impact: 0.00429471273 (flip) to 0.0138888889 (border)" */
-static int print_window(const place *at, const reader_group *g, hsize_t row) {
+static int print_window(const file_place *at, const reader_group *g, uint64_t row) {
   static const char *const names[] = {"period", "impacts", "low", "low_kind", "high", "high_kind", "reason", "task"};
   char cells[8][CELL];
   for (size_t i = 0; i < 8; i++) {
-    const int code = cell(at, g, names[i], row, cells[i]);
+    const int code = reader_cell(at, reader_find(g, names[i]), row, DIGITS, cells[i], CELL);
     if (code)
       return code;
   }
@@ -102,16 +82,16 @@ static int print_window(const place *at, const reader_group *g, hsize_t row) {
 }
 
 /* "  attractor 0, of period 3: 800 starts, the first of them task 0" */
-static int print_attractor(const place *at, const reader_group *g, hsize_t row) {
+static int print_attractor(const file_place *at, const reader_group *g, uint64_t row) {
   char period[CELL], tasks[CELL], first[CELL];
-  int code = cell(at, g, "found_period", row, period);
+  int code = reader_cell(at, reader_find(g, "found_period"), row, DIGITS, period, CELL);
   if (!code)
-    code = cell(at, g, "found_tasks", row, tasks);
+    code = reader_cell(at, reader_find(g, "found_tasks"), row, DIGITS, tasks, CELL);
   if (!code)
-    code = cell(at, g, "found_first", row, first);
+    code = reader_cell(at, reader_find(g, "found_first"), row, DIGITS, first, CELL);
   if (code)
     return code;
-  printf("  attractor %" PRIu64 ", ", (uint64_t)row);
+  printf("  attractor %" PRIu64 ", ", row);
   if (strcmp(period, "0") == 0)
     printf("without a period");
   else
@@ -120,27 +100,27 @@ static int print_attractor(const place *at, const reader_group *g, hsize_t row) 
   return 0;
 }
 
-typedef int row_printer(const place *at, const reader_group *g, hsize_t row);
+typedef int row_printer(const file_place *at, const reader_group *g, uint64_t row);
 
-static int print_rows(const place *at, const reader_group *g, const char *column, const char *heading,
+static int print_rows(const file_place *at, const reader_group *g, const char *counted, const char *heading,
                       row_printer *print) {
-  const reader_set *s = find(g, column);
-  const hsize_t rows = is_column(s, READER_INTEGER) ? s->shape[0] : 0;
+  const reader_set *s = reader_find(g, counted);
+  const uint64_t rows = is_column(s, READER_INTEGER) ? s->shape[0] : 0;
   int code = 0;
   if (rows > 0)
     printf("%s\n", heading);
-  for (hsize_t i = 0; !code && i < rows && i < ROWS_SHOWN; i++)
+  for (uint64_t i = 0; !code && i < rows && i < ROWS_SHOWN; i++)
     code = print(at, g, i);
   if (!code && rows > ROWS_SHOWN)
-    printf("  ... %" PRIu64 " more\n", (uint64_t)(rows - ROWS_SHOWN));
+    printf("  ... %" PRIu64 " more\n", rows - ROWS_SHOWN);
   return code;
 }
 
 /* --- the card ----------------------------------------------------------------------------------------------------- */
 
-static int print_windows(const place *at, hid_t file) {
+static int print_windows(const file_place *at, reader_handle file) {
   reader_group windows = {0};
-  if (H5Lexists(file, "window", H5P_DEFAULT) <= 0)
+  if (!reader_has(file, "window"))
     return 0;
   int code = reader_group_open(at, file, "window", &windows);
   if (!code)
@@ -150,16 +130,22 @@ static int print_windows(const place *at, hid_t file) {
   return code;
 }
 
-int diagram_card_show(const place *at, hid_t file) {
+static int show_group(const file_place *at, reader_handle file, const char *name) {
   reader_group group = {0};
-  const bool is_diagram = H5Lexists(file, "diagram", H5P_DEFAULT) > 0;
-  if (!is_diagram && H5Lexists(file, "basin", H5P_DEFAULT) <= 0)
-    return 0;
-  int code = reader_group_open(at, file, is_diagram ? "diagram" : "basin", &group);
+  int code = reader_group_open(at, file, name, &group);
   if (!code)
     code = print_periods(at, &group);
   if (!code)
     code = print_rows(at, &group, "found_period", "attractors that starts come to:", print_attractor);
   reader_group_clear(&group);
-  return code || !is_diagram ? code : print_windows(at, file);
+  return code;
+}
+
+int diagram_show(const file_place *at, reader_handle file) {
+  const int code = show_group(at, file, "diagram");
+  return code ? code : print_windows(at, file);
+}
+
+int basin_show(const file_place *at, reader_handle file) {
+  return show_group(at, file, "basin");
 }

@@ -1,4 +1,5 @@
-#include "cards.h"
+/* What `show` says of the first tasks of a result of kind `grazing`, in sentences. */
+#include "grazing.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -6,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "reader.h"
+#include "result/reader.h"
 
 enum {
   CARDS_SHOWN = 5,
@@ -20,28 +21,21 @@ enum {
 
 /* A card on its way: the first failure to read is kept, and nothing is read after it. */
 typedef struct card {
-  const place *at;
+  const file_place *at;
   const reader_group *sweep, *group;
-  hsize_t task;
+  uint64_t task;
   int code;
 } card;
 
-static const reader_set *find(card *k, const char *name) {
-  for (size_t i = 0; i < k->group->count; i++)
-    if (strcmp(k->group->sets[i].name, name) == 0)
-      return &k->group->sets[i];
-  return NULL;
+static const reader_set *find(const card *k, const char *name) {
+  return reader_find(k->group, name);
 }
 
 /* A value of the task as text; "" when it cannot be read. */
 static const char *text_of(card *k, const reader_set *s, int digits, char *text) {
-  unsigned char *value = s && s->rank == 1 && s->shape[0] > k->task && !k->code ? calloc(1, s->value_bytes + 1) : NULL;
   *text = '\0';
-  if (value)
-    k->code = reader_rows(k->at, s, k->task, 1, value);
-  if (value && !k->code)
-    reader_value(s, value, digits, text, TEXT);
-  free(value);
+  if (!k->code)
+    k->code = reader_cell(k->at, s, k->task, digits, text, TEXT);
   return text;
 }
 
@@ -226,10 +220,10 @@ static void print_card(card *k) {
   print_windows(k, followed);
 }
 
-static int print_cards(const place *at, const reader_group *sweep, const reader_group *group) {
+static int print_cards(const file_place *at, const reader_group *sweep, const reader_group *group) {
   card k = {.at = at, .sweep = sweep, .group = group};
   const reader_set *outcome = find(&k, "outcome");
-  const hsize_t tasks = outcome && outcome->rank == 1 ? outcome->shape[0] : 0;
+  const uint64_t tasks = outcome && outcome->rank == 1 ? outcome->shape[0] : 0;
   for (; !k.code && k.task < tasks && k.task < CARDS_SHOWN; k.task++)
     print_card(&k);
   if (!k.code && tasks > CARDS_SHOWN)
@@ -237,12 +231,10 @@ static int print_cards(const place *at, const reader_group *sweep, const reader_
   return k.code;
 }
 
-int grazing_cards_show(const place *at, hid_t file) {
+int grazing_show(const file_place *at, reader_handle file) {
   reader_group sweep = {0}, group = {0};
-  if (H5Lexists(file, "grazing", H5P_DEFAULT) <= 0)
-    return 0;
   int code = reader_group_open(at, file, "grazing", &group);
-  if (!code && H5Lexists(file, "sweep", H5P_DEFAULT) > 0)
+  if (!code && reader_has(file, "sweep"))
     code = reader_group_open(at, file, "sweep", &sweep);
   if (!code)
     code = print_cards(at, &sweep, &group);
