@@ -8,8 +8,7 @@
 #include "../run/launcher.h"
 #include "../run/ranks.h"
 #include "command.h"
-#include "compute.h"
-#include "output.h"
+#include "run.h"
 
 static const char help[] =
     "usage: ricochet run STUDY.yaml [options]\n"

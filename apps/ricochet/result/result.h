@@ -6,7 +6,7 @@
  * root attributes `file_time` and `command`. h5py reads it, and xarray group by group, with no option and no helper;
  * units are those of science ("s"), for xarray turns "seconds" into dates.
  *
- * Who does what: plan.h cuts the tables into chunks and blocks, skeleton.h makes all metadata in memory, space.h puts
+ * Who does what: plan.h cuts the tables into chunks and blocks, skeleton.h makes all metadata in memory, it puts
  * them on the disk with space for all rows, rows.h has every rank write its blocks, verify.h reads them back. */
 #ifndef RICOCHET_APP_RESULT_H
 #define RICOCHET_APP_RESULT_H

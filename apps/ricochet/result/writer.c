@@ -11,7 +11,6 @@
 #include "../run/ranks.h"
 #include "hdf5_call.h"
 #include "plan.h"
-#include "space.h"
 #include "verify.h"
 #include "data_set.h"
 #include "skeleton.h"

@@ -1,4 +1,4 @@
-#include "typed.h"
+#include "check.h"
 
 #include <math.h>
 #include <stdlib.h>
