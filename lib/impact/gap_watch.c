@@ -8,7 +8,7 @@
 /* Relative, on large values of minima: less would not take anything away from them. */
 static const double value_rounding = 1e-14;
 
-static const gap_found nothing = {.value = INFINITY, .time = NAN, .obstacle = NO_OBSTACLE, .gap = INFINITY};
+static const gap_found nothing = {.value = INFINITY, .time = NAN, .obstacle = NO_OBSTACLE};
 
 void gap_watch_begin(gap_watch *w, double tolerance, double zero, double most_own) {
   *w = (gap_watch){.tolerance = tolerance,
@@ -38,10 +38,21 @@ static void keep(gap_watch *w, bool hit, gap_found found) {
     w->next_free = next;
 }
 
-static void keep_at(gap_watch *w, const gap_piece *p, double value, double x) {
-  keep(w, p->hit,
-       (gap_found){
-           .value = value, .time = time_at(p, x), .obstacle = p->obstacle, .gap = p->divided ? value * x : value});
+static void keep_at(gap_watch *w, const gap_piece *p, double value, double y) {
+  keep(w, p->hit, (gap_found){.value = value, .time = time_at(p, y), .obstacle = p->obstacle, .divided = p->divided});
+}
+
+/* The same of a divided polynomial. What it says of a violation is told by the gap itself, if that is one. */
+static void keep_divided(gap_watch *w, const gap_piece *p, double value, double y) {
+  gap_piece whole = *p;
+  double least, at;
+  whole.c--;
+  whole.degree++;
+  whole.divided = false;
+  if (value < -w->zero && ric_poly_minimum(whole.c, whole.degree, -w->zero, w->tolerance, &at, &least))
+    keep_at(w, &whole, least, at);
+  else
+    keep_at(w, p, value, y);
 }
 
 /* When the gap first falls below -zero; first in time is last in x where time runs back. */
@@ -59,13 +70,17 @@ static void find_violation(gap_watch *w, const gap_piece *p) {
     return;
   double time = time_at(p, back ? 1 - x : x);
   if (time < w->first.time)
-    w->first = (gap_found){.value = -w->zero, .time = time, .obstacle = p->obstacle, .gap = -w->zero};
+    w->first = (gap_found){.value = -w->zero, .time = time, .obstacle = p->obstacle};
 }
 
 void gap_watch_value(gap_watch *w, const gap_piece *p) {
   double x, value;
-  if (ric_poly_minimum(p->c, p->degree, p->hit ? w->next_own : w->next_free, w->tolerance, &x, &value))
-    keep_at(w, p, value, x);
+  if (ric_poly_minimum(p->c, p->degree, p->hit ? w->next_own : w->next_free, w->tolerance, &x, &value)) {
+    if (p->divided)
+      keep_divided(w, p, value, x);
+    else
+      keep_at(w, p, value, x);
+  }
   if (fmin(w->free.value, w->own.value) < -w->zero)
     find_violation(w, p);
 }
@@ -90,9 +105,9 @@ void gap_watch_minima(gap_watch *w, const gap_piece *p, double *slope) {
 }
 
 void gap_watch_add(gap_watch *w, double value, double time, size_t obstacle) {
-  keep(w, true, (gap_found){.value = value, .time = time, .obstacle = obstacle, .gap = value});
+  keep(w, true, (gap_found){.value = value, .time = time, .obstacle = obstacle});
   if (value < -w->zero && time < w->first.time)
-    w->first = (gap_found){.value = -w->zero, .time = time, .obstacle = obstacle, .gap = -w->zero};
+    w->first = (gap_found){.value = -w->zero, .time = time, .obstacle = obstacle};
 }
 
 /* --- the gaps of a system ----------------------------------------------------------------------------------------- */

@@ -19,10 +19,10 @@
 
 /** A gap, where and when. */
 typedef struct gap_found {
-  double value; /* INFINITY: none; of a divided polynomial its value */
+  double value; /* INFINITY: none */
   double time;
   size_t obstacle; /* NO_OBSTACLE: none */
-  double gap;      /* itself: `value` unless that is of a divided polynomial */
+  bool divided;    /* the value is that of a divided polynomial: not above the gap where it is negative */
 } gap_found;
 
 typedef struct gap_watch {
@@ -44,7 +44,7 @@ typedef struct gap_piece {
   double from, to;
   size_t obstacle;
   bool hit;     /* the motion hits this obstacle, here or elsewhere */
-  bool divided; /* c is the gap divided by y */
+  bool divided; /* c is the gap divided by y; c[-1] is its value at 0, zero to rounding */
 } gap_piece;
 
 /** Whether a gap that is nowhere below a bound on a stretch of time may matter. @param from  the beginning of it */

@@ -73,7 +73,7 @@ void verdict_write_mode(char *text, size_t bytes, size_t mode, double harmonic) 
 void verdict_write_grazing(char *text, size_t bytes, const obstacle_names *names, const gap_found *gap) {
   char words[PHRASE_BYTES];
   snprintf(text, bytes, "%s at t = %.6g (gap %.2g)", phrase(names, gap->obstacle, "touches", words), gap->time,
-           gap->gap);
+           gap->value);
 }
 
 /* --- outcomes ----------------------------------------------------------------------------------------------------- */
@@ -107,20 +107,15 @@ static void explain_pulling(const orbit_facts *f, ric_orbit *o, size_t k) {
       phrase(&f->names, o->impact_obstacle[k], "is pulled by", words), o->impact_time[k], o->gap_rate[k]);
 }
 
-/* What is farthest beyond an obstacle. Values near an impact may be those of divided polynomials. */
-static const gap_found *deepest(const gap_watch *w) {
-  return w->free.gap <= w->own.gap ? &w->free : &w->own;
-}
-
 static void explain_passing(const orbit_facts *f, ric_orbit *o) {
-  const gap_found *least = deepest(f->gaps), *first = &f->gaps->first;
+  const gap_found *least = gap_watch_least(f->gaps), *first = &f->gaps->first;
   char words[PHRASE_BYTES];
   if (first->obstacle == NO_OBSTACLE)
-    first = gap_watch_least(f->gaps); /* below -zero by rounding alone */
+    first = least; /* below -zero by rounding alone */
   double time = time_in_period(o, first->time);
   add(o, "%s at t = %.6g", phrase(&f->names, first->obstacle, time > 0 ? "passes" : "is beyond", words), time);
-  if (least->gap < 0)
-    add(o, "; smallest gap %.6g, %s at t = %.6g", least->gap, owner(&f->names, least->obstacle, words),
+  if (least->value < 0 && !least->divided)
+    add(o, "; smallest gap %.6g, %s at t = %.6g", least->value, owner(&f->names, least->obstacle, words),
         time_in_period(o, least->time));
 }
 
@@ -177,7 +172,7 @@ void verdict_add_violation(const orbit_facts *f, ric_orbit *o) {
   size_t pulling = first_pulling(f, o);
   char words[PHRASE_BYTES];
   if (least->value < -f->gaps->zero)
-    add(o, "; inadmissible, gap %.3g of %s", least->gap, owner(&f->names, least->obstacle, words));
+    add(o, "; inadmissible, %s", phrase(&f->names, least->obstacle, "passes", words));
   else if (pulling != SIZE_MAX)
     add(o, "; inadmissible, %s", phrase(&f->names, o->impact_obstacle[pulling], "is pulled by", words));
 }
