@@ -38,7 +38,7 @@ static double gap_at(const solved *x, const modal_motion *motion, size_t particl
 static int begins_below(const solved *x, const modal_motion *motion) {
   size_t particle;
   int read = 0;
-  sscanf(x->orbit.reason, "particle %zu is beyond its floor at t = 0%n", &particle, &read);
+  sscanf(x->orbit.reason, "particle %zu is below its floor at t = 0%n", &particle, &read);
   if (read > 0)
     assert_true(gap_at(x, motion, particle, 0, NULL) < 0);
   return read > 0;
@@ -75,7 +75,7 @@ static void first_violation_is_where_sampling_finds_it(void **state) {
 static void check_reason(solved *x, modal_motion *motion, double zero) {
   (void)motion, (void)zero;
   if (x->orbit.outcome == RIC_INADMISSIBLE)
-    assert_true(strstr(x->orbit.reason, "passes its floor") || strstr(x->orbit.reason, "is beyond its floor") ||
+    assert_true(strstr(x->orbit.reason, "passes its floor") || strstr(x->orbit.reason, "is below its floor") ||
                 strstr(x->orbit.reason, "must be negative"));
 }
 

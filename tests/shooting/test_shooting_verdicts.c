@@ -40,7 +40,7 @@ static ric_system *two_floors(void) {
 
 static void assert_goes_through_the_upper_floor(shot *s, double time) {
   char word[64];
-  snprintf(word, sizeof word, "%s its floor (obstacle 0) at t = %.4g", time > 0 ? "passes" : "is beyond", time);
+  snprintf(word, sizeof word, "%s its floor (obstacle 0) at t = %.4g", time > 0 ? "passes" : "is below", time);
   shot_solve(s);
   assert_int_equal(s->orbit.outcome, RIC_INADMISSIBLE);
   if (!strstr(s->orbit.reason, "smallest gap -0.2") || !strstr(s->orbit.reason, word))
