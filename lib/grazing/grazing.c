@@ -420,8 +420,8 @@ static ric_status find_criterion(tracer *t, const ric_family_curve_point *p, ric
   ric_family *f = t->f;
   ric_grazing *g = &t->grazing;
   const size_t obstacle = g->local.obstacle;
-  const shooting_gaps *gaps = f->shooting->gaps; /* of the point's orbit: where the gap is zero on the curve */
-  const gap_found *least = gaps->hit[obstacle] ? &gaps->own : &gaps->free;
+  const system_gaps *gaps = &f->shooting->gaps; /* of the point's orbit: where the gap is zero on the curve */
+  const gap_found *least = gaps->hit[obstacle] ? &gaps->watch.own : &gaps->watch.free;
   gap_minimum at = {.obstacle = obstacle, .time = least->time, .x = g->x, .rates = t->rates};
   if (least->obstacle != obstacle)
     return ric_fail(error, RIC_ENUMERIC, "obstacle %zu is touched where obstacle %zu was", least->obstacle, obstacle);

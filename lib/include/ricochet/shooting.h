@@ -31,6 +31,7 @@
 #include "multipliers.h"
 #include "orbit.h"
 #include "trajectory.h"
+#include "verify.h"
 
 RIC_BEGIN_DECLARATIONS
 
@@ -131,6 +132,14 @@ RIC_API ric_status ric_shooting_amplitude(ric_shooting *shooting, const double *
  *  @returns RIC_EINVAL; as ric_shooting_residual. */
 RIC_API ric_status ric_shooting_states(ric_shooting *shooting, const double *z, double given, size_t count, double *q,
                                        double *v, ric_error *error);
+
+/** Verifies the orbit of a solution by an event-driven run (verify.h), from within the longest time between its impacts
+ *  on; `not_run` unless it is admissible.
+ *  @param orbit  of the solution, from ric_shooting_orbit
+ *  @returns as ric_verify, ric_shooting_residual. */
+RIC_API ric_status ric_shooting_verify(ric_shooting *shooting, const double *z, double given, const ric_orbit *orbit,
+                                       const ric_verify_options *options, ric_verification *verification,
+                                       ric_error *error);
 
 /** Multipliers of a solution, also of one that is not admissible, from the tangent vectors of its arcs. Of even motions
  * by the n x n block (M + M^-1) / 2, as orbit_multipliers.h says.

@@ -143,16 +143,11 @@ static ric_status solve(worker *w, ric_error *error) {
 /* An event-driven run decides about an orbit that seems to be one. @returns RIC_OK or RIC_ESTOPPED */
 static ric_status verify(worker *w) {
   ric_error error = {0};
-  ric_verification *found = &w->verification;
-  *found = (ric_verification){.result = RIC_NOT_RUN, .closure_error = NAN};
-  if (!w->verifies || (w->orbit.outcome != RIC_ADMISSIBLE && w->orbit.outcome != RIC_GRAZING))
+  w->verification = (ric_verification){.result = RIC_NOT_RUN, .closure_error = NAN};
+  if (!w->verifies)
     return RIC_OK;
-  ric_status status = ric_orbit_verify(w->solver, &w->model.chain, w->pattern, &w->orbit, &w->verify, found, &error);
-  if (status == RIC_OK || status == RIC_ESTOPPED)
-    return status;
-  *found = (ric_verification){.result = RIC_RUN_FAILED, .closure_error = NAN};
-  snprintf(found->reason, sizeof found->reason, "%.*s", (int)sizeof found->reason - 1, error.message);
-  return RIC_OK;
+  return orbits_verified(ric_orbit_verify(w->solver, &w->model.chain, &w->orbit, &w->verify, &w->verification, &error),
+                         &error, &w->verification);
 }
 
 /* What the verifier says has its place where the orbit itself leaves nothing to say. */
