@@ -1,9 +1,9 @@
-/* The verifier: an event-driven run over one period against the impacts of an orbit.
+/* The verifier: an event-driven run over one period, compared with the predicted impacts of an orbit.
  *
- * However an orbit was found, the same three questions decide: does the motion return to where it began (closure), does
- * every predicted impact happen at its time on its obstacle, and does nothing else happen? The run knows nothing of the
- * method that found the orbit. Impacts, with times and obstacles, and the period are those of the orbit; the run begins
- * at any time that is not one of an impact. */
+ * However an orbit was found, three questions decide: does the motion return to its initial state (closure), does
+ * every predicted impact happen at its time on its obstacle, and is there no other impact? The run does not depend on
+ * the method that found the orbit. Impacts, with times and obstacles, and the period are those of the orbit; the run
+ * begins at any time that is not one of an impact. */
 #ifndef RICOCHET_VERIFY_H
 #define RICOCHET_VERIFY_H
 
@@ -36,14 +36,14 @@ typedef struct ric_verification {
   char reason[320];     /* which impact, when, by how much; "" when verified */
   double closure_error; /* largest difference of coordinates and speeds after one period, relative to the largest
                            coordinate and speed; NaN when not run */
-  size_t impacts;       /* that happened */
+  size_t impacts;       /* number that happened */
 } ric_verification;
 
 typedef struct ric_verify_options {
-  double closure_tol;            /* 1e-8: closure errors above it are `not_closed`; the errors of a strongly unstable
-                                    orbit grow by its largest multiplier within the period */
+  double closure_tol; /* 1e-8: larger closure errors are `not_closed`; errors of a strongly unstable orbit grow by its
+                         largest multiplier within the period */
   double impact_time_tol;        /* 1e-7, relative to the period */
-  ric_trajectory_options motion; /* how the run is made */
+  ric_trajectory_options motion; /* options of the run */
 } ric_verify_options;
 
 RIC_API ric_verify_options ric_verify_options_default(void);
