@@ -18,7 +18,7 @@ static const double shorter = 0.4;
 /* The tangent may turn by this part of what is allowed before steps stop growing. */
 static const double turn_wanted = 0.7;
 
-typedef struct walk {
+typedef struct curve_follower {
   ric_curve *c;
   int (*point)(const ric_curve_point *point, void *user);
   void *user;
@@ -27,16 +27,16 @@ typedef struct walk {
   bool along; /* the first step, along a given tangent */
   bool over;
   ric_error why; /* of the last failure */
-} walk;
+} curve_follower;
 
-static void end(walk *w, ric_curve_end how, const char *reason) {
+static void end(curve_follower *w, ric_curve_end how, const char *reason) {
   w->run->end = how;
   w->over = true;
   snprintf(w->run->reason, sizeof w->run->reason, "%s", reason);
 }
 
 /* Shows a point to the caller. */
-static void report_node(walk *w, const curve_node *node, double step) {
+static void report_node(curve_follower *w, const curve_node *node, double step) {
   size_t n = w->c->problem.unknowns;
   const ric_curve_point point = {.kind = node->kind,
                                  .which = node->which,
@@ -80,7 +80,7 @@ static ric_status begin_at(ric_curve *c, ric_error *error) {
 }
 
 /* The first point. */
-static ric_status begin_curve(walk *w, double *u, double p, const double *tangent, ric_error *error) {
+static ric_status begin_curve(curve_follower *w, double *u, double p, const double *tangent, ric_error *error) {
   ric_curve *c = w->c;
   size_t n = c->problem.unknowns;
   if (!(p >= c->options.p_low && p <= c->options.p_high && isfinite(p)))
@@ -101,7 +101,7 @@ static ric_status begin_curve(walk *w, double *u, double p, const double *tangen
 }
 
 /* Steps to `to`, shorter and shorter until one succeeds. @param shortened  whether the first did not */
-static ric_status step_curve(walk *w, bool *landed, bool *closed, bool *shortened) {
+static ric_status step_curve(curve_follower *w, bool *landed, bool *closed, bool *shortened) {
   ric_curve *c = w->c;
   *shortened = *landed = *closed = false;
   for (;; w->h *= shorter, *shortened = true) {
@@ -119,7 +119,7 @@ static ric_status step_curve(walk *w, bool *landed, bool *closed, bool *shortene
 
 /* A quarter of the allowed corrections leaves a step as it is; two less double it, if the tangent has not turned too
  * much. Longer steps than that with more corrections each are not cheaper by the length. */
-static void choose_next(walk *w, bool shortened) {
+static void choose_next(curve_follower *w, bool shortened) {
   const ric_curve_options *o = &w->c->options;
   double turn = step_turn(w->c), wanted = fmax(1, o->iterations / 4.0);
   double factor = exp2((wanted - w->c->to.iterations) / 2);
@@ -130,7 +130,7 @@ static void choose_next(walk *w, bool shortened) {
 }
 
 /* Locates and shows the special points of the step. */
-static ric_status show_special(walk *w) {
+static ric_status show_special(curve_follower *w) {
   ric_curve *c = w->c;
   size_t count;
   RIC_TRY(locate_special(c, &count, &w->run->missed, &w->why));
@@ -144,7 +144,7 @@ static ric_status show_special(walk *w) {
 }
 
 /* One step, shown; sets the end when it is the last. */
-static ric_status advance_curve(walk *w) {
+static ric_status advance_curve(curve_follower *w) {
   ric_curve *c = w->c;
   bool landed, closed, shortened, keep = !w->along; /* a given tangent may be a guess */
   c->from.sigma = 0;
@@ -172,7 +172,7 @@ static bool starts_outward(const ric_curve *c) {
   return (p == c->options.p_high && t_p > 0) || (p == c->options.p_low && t_p < 0);
 }
 
-static ric_status walk_on(walk *w, double *u, double p, const double *tangent) {
+static ric_status run_to_end(curve_follower *w, double *u, double p, const double *tangent) {
   RIC_TRY(begin_curve(w, u, p, tangent, &w->why));
   if (!w->over && starts_outward(w->c))
     end(w, RIC_CURVE_BOUND, "");
@@ -184,11 +184,11 @@ static ric_status walk_on(walk *w, double *u, double p, const double *tangent) {
 ric_status ric_curve_follow(ric_curve *curve, double *u, double p, const double *tangent,
                             int (*point)(const ric_curve_point *point, void *user), void *user, ric_curve_run *run,
                             ric_error *error) {
-  walk w = {.c = curve, .point = point, .user = user, .run = run};
+  curve_follower w = {.c = curve, .point = point, .user = user, .run = run};
   *run = (ric_curve_run){0};
   curve->iterations = curve->linear.jacobians = 0;
   gsl_error_handler_t *handler = gsl_set_error_handler_off();
-  ric_status status = walk_on(&w, u, p, tangent);
+  ric_status status = run_to_end(&w, u, p, tangent);
   gsl_set_error_handler(handler);
   run->iterations = curve->iterations;
   run->jacobians = curve->linear.jacobians;

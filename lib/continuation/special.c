@@ -130,7 +130,7 @@ static ric_status shorten(const search *s, bool *found) {
 }
 
 /* Whether Newton's method has left a point where it was, as it does where it has a hold. */
-static bool stays(const ric_curve *c, const curve_node *before, const curve_node *after) {
+static bool correction_is_small(const ric_curve *c, const curve_node *before, const curve_node *after) {
   return curve_distance(c, before->x, after->x) <= c->options.locate_tol * (1 + curve_norm(c, before->x));
 }
 
@@ -142,7 +142,7 @@ static ric_status sharpen(const search *s, curve_node *end, const curve_node *wa
     return RIC_OK;
   curve_node_copy(c, &c->trial, end);
   ric_status status = correct(s, &c->trial);
-  if (status == RIC_OK && stays(c, end, &c->trial) && value_of(s, end) * value_of(s, &c->trial) > 0)
+  if (status == RIC_OK && correction_is_small(c, end, &c->trial) && value_of(s, end) * value_of(s, &c->trial) > 0)
     curve_node_copy(c, end, &c->trial);
   return status == RIC_ENUMERIC ? RIC_OK : status;
 }
@@ -194,7 +194,7 @@ static double zero_of(search *s) {
 }
 
 /* Sets a node to the special point: on the cubic at a branch point, else corrected. */
-static ric_status settle(search *s, double sigma, curve_node *node) {
+static ric_status place_special(search *s, double sigma, curve_node *node) {
   ric_curve *c = s->c;
   predict(s, sigma, node);
   node->kind = s->kind;
@@ -219,7 +219,7 @@ static ric_status locate(search *s, curve_node *node, bool *found) {
   *found = !isnan(sigma);
   if (s->status != RIC_OK && s->status != RIC_ENUMERIC)
     return s->status;
-  ric_status status = *found ? settle(s, sigma, node) : RIC_OK;
+  ric_status status = *found ? place_special(s, sigma, node) : RIC_OK;
   *found = *found && status == RIC_OK;
   return status == RIC_ENUMERIC ? RIC_OK : status;
 }
@@ -233,7 +233,7 @@ static void sort_in(curve_node *found, size_t count) {
   }
 }
 
-static ric_status look_for(search *s, size_t *count, size_t *missed) {
+static ric_status search_zero(search *s, size_t *count, size_t *missed) {
   ric_curve *c = s->c;
   bool found;
   if (!sign_changes(value_of(s, &c->from), value_of(s, &c->to)))
@@ -253,10 +253,10 @@ ric_status locate_special(ric_curve *c, size_t *count, size_t *missed, ric_error
   search s = {.c = c, .error = error, .log_scale = fmax(c->from.det.log, c->to.det.log)};
   *count = 0;
   for (s.kind = RIC_CURVE_FOLD; s.kind <= RIC_CURVE_BRANCH_POINT; s.kind++)
-    RIC_TRY(look_for(&s, count, missed));
+    RIC_TRY(search_zero(&s, count, missed));
   s.kind = RIC_CURVE_TEST;
   for (s.which = 0; s.which < c->problem.tests; s.which++)
-    RIC_TRY(look_for(&s, count, missed));
+    RIC_TRY(search_zero(&s, count, missed));
   return RIC_OK;
 }
 

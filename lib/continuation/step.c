@@ -249,7 +249,7 @@ ric_status step_try(ric_curve *c, double h, bool *landed, ric_error *error) {
 }
 
 /* Whether the curve comes back to its start at `trial`, which is on the cubic of the step. */
-static ric_status meets_start(ric_curve *c, bool *meets, ric_error *error) {
+static ric_status returns_to_start(ric_curve *c, bool *returns, ric_error *error) {
   const curve_node *start = &c->start;
   double *x = c->trial.x, gap = curve_distance(c, x, start->x), step = c->to.sigma;
   int iterations;
@@ -257,9 +257,9 @@ static ric_status meets_start(ric_curve *c, bool *meets, ric_error *error) {
     return RIC_OK;
   ric_status status = corrector_run(c, c->row, x, true, &iterations, error);
   if (status == RIC_OK)
-    *meets = curve_distance(c, x, start->x) <= sqrt(c->options.newton_tol) * (1 + curve_norm(c, x));
+    *returns = curve_distance(c, x, start->x) <= sqrt(c->options.newton_tol) * (1 + curve_norm(c, x));
   else if (status == RIC_ENUMERIC)
-    *meets = gap <= at_start * step;
+    *returns = gap <= at_start * step;
   return status == RIC_ENUMERIC ? RIC_OK : status;
 }
 
@@ -272,7 +272,7 @@ ric_status step_close(ric_curve *c, bool *closed, ric_error *error) {
     return RIC_OK;
   cubic_point(&q, sigma, c->trial.x);
   cubic_tangent(&q, sigma, c->trial.t);
-  RIC_TRY(meets_start(c, closed, error));
+  RIC_TRY(returns_to_start(c, closed, error));
   if (!*closed)
     return RIC_OK;
   curve_node_copy(c, &c->to, &c->start);

@@ -252,7 +252,7 @@ static ric_status soundness(ric_family *f, const double *z, double parameter, do
                             ric_error *error) {
   RIC_TRY(family_set(f, parameter, second, error));
   RIC_TRY(family_judge(f, z, error));
-  const shooting_gaps *g = f->shooting->gaps;
+  const gap_watch *g = &f->shooting->gaps.watch;
   *value = fmin(g->free.value, g->own.value);
   for (size_t k = 0; k < f->impacts; k++)
     *value = fmin(*value, -f->orbit.gap_rate[k]);

@@ -204,8 +204,8 @@ static double duration(const ric_family *f, const double *z, size_t arc) {
 
 void family_tests(ric_family *f, const double *z, double *values) {
   tests_of_multipliers(f, values);
-  values[TEST_FREE_GAP] = or_none(f->shooting->gaps->free.value);
-  values[TEST_OWN_GAP] = or_none(f->shooting->gaps->own.value);
+  values[TEST_FREE_GAP] = or_none(f->shooting->gaps.watch.free.value);
+  values[TEST_OWN_GAP] = or_none(f->shooting->gaps.watch.own.value);
   for (size_t k = 0; k < f->impacts; k++)
     values[TEST_IMPACTS + k] = f->orbit.gap_rate[k];
   size_t first = TEST_IMPACTS + f->impacts;
@@ -326,10 +326,10 @@ void family_name_zero(ric_family *f, const double *z, size_t test, ric_family_po
     point->order = test == TEST_THIRD ? 3 : 4;
     return;
   case TEST_FREE_GAP:
-    name_touch(f, &f->shooting->gaps->free, point);
+    name_touch(f, &f->shooting->gaps.watch.free, point);
     return;
   case TEST_OWN_GAP:
-    name_touch(f, &f->shooting->gaps->own, point);
+    name_touch(f, &f->shooting->gaps.watch.own, point);
     return;
   case TEST_IMPACTS:
     break;

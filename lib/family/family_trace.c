@@ -53,7 +53,7 @@ static ric_status psi(tracer *t, const double *z, double first, double second, d
     *value = shooting_spectrum_tests(f->shooting).minus_one[t->which];
   } else {
     RIC_TRY(ric_shooting_orbit(f->shooting, z, f->given, &f->orbit, error));
-    const shooting_gaps *g = f->shooting->gaps;
+    const gap_watch *g = &f->shooting->gaps.watch;
     *value = t->which == TEST_FREE_GAP  ? g->free.value
              : t->which == TEST_OWN_GAP ? g->own.value
                                         : f->orbit.gap_rate[t->which - TEST_IMPACTS];
@@ -156,7 +156,7 @@ static ric_status choose_test(tracer *t, const ric_family_point *point) {
   double least = INFINITY;
   RIC_TRY(ric_shooting_orbit(f->shooting, point->z, f->given, &f->orbit, t->error));
   if (point->kind == RIC_FAMILY_GRAZING) {
-    t->which = f->shooting->gaps->hit[point->obstacle] ? TEST_OWN_GAP : TEST_FREE_GAP;
+    t->which = f->shooting->gaps.hit[point->obstacle] ? TEST_OWN_GAP : TEST_FREE_GAP;
     return RIC_OK;
   }
   for (size_t k = 0; k < f->impacts; k++)

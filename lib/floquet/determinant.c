@@ -32,7 +32,7 @@ static double undivided(const arc *a) {
 }
 
 /* Poles on it that are seen, and the sum of their signs. */
-static size_t seen_on(const secular *s, const arc *a, long *signs) {
+static size_t poles_on(const secular *s, const arc *a, long *signs) {
   size_t seen = 0;
   *signs = 0;
   for (size_t j = a->first; j < a->last; j++)
@@ -49,7 +49,7 @@ static size_t bound_on(const arc *a, long signs) {
 
 static size_t bound_of(const secular *s, const arc *a) {
   long signs;
-  seen_on(s, a, &signs);
+  poles_on(s, a, &signs);
   return bound_on(a, signs);
 }
 
@@ -110,7 +110,7 @@ static double place(const secular *s, const arc *a) {
 
 static size_t count_on(secular *s, const arc *a, int depth) {
   long signs;
-  size_t seen = seen_on(s, a, &signs), bound = bound_on(a, signs);
+  size_t seen = poles_on(s, a, &signs), bound = bound_on(a, signs);
   if (s->stopped || depth == 0 || seen == 0 || bound == seen || a->high - a->low < undivided(a))
     return bound;
   arc left, right;
@@ -131,7 +131,7 @@ static size_t unit_circle_near_one(secular *s, double band) {
               .negative_low = secular_negative(s, 0),
               .negative_high = secular_negative(s, band),
               .last = first_above(s, 0, s->particles, band)};
-  seen_on(s, &near, &signs);
+  poles_on(s, &near, &signs);
   return hidden_below(s, band) + bound_on(&near, signs);
 }
 
@@ -187,7 +187,7 @@ static void put(search *x, double angle, size_t times) {
 
 static void find_on(search *x, const arc *a, int spare) {
   long signs;
-  size_t seen = seen_on(x->s, a, &signs), bound = bound_on(a, signs);
+  size_t seen = poles_on(x->s, a, &signs), bound = bound_on(a, signs);
   double length = a->high - a->low;
   bool barren = bound == 0 && seen <= 1;
   if (x->s->stopped || (barren && seen == 1 && spare == 0))
@@ -233,7 +233,7 @@ static ric_status unit_circle_find(secular *s, double from, size_t wanted, doubl
 }
 
 /* What the counts tell. */
-typedef struct told {
+typedef struct multiplier_counts {
   size_t on_circle; /* pairs, at least */
   size_t outside;   /* beyond the last contour */
   double contour;   /* log of its radius */
@@ -241,14 +241,14 @@ typedef struct told {
   double far;       /* log of its radius */
   size_t near_one;  /* multipliers too close to 1, besides the trivial ones */
   double from;      /* angle from which the circle is looked at */
-} told;
+} multiplier_counts;
 
 /* More multipliers than this between the last two contours are counted and not located: hundreds of them leave the
  * circle of a large ring by 1e-6 where modes of both signs overlap. */
 enum { MOST_BETWEEN = 64 };
 
 /* A contour that meets a multiplier is moved a little. */
-static bool count_outside(secular *s, double distance, told *t) {
+static bool count_outside(secular *s, double distance, multiplier_counts *t) {
   t->farther = t->outside;
   t->far = t->contour > 0 ? t->contour : INFINITY;
   for (int i = 0; i < 4; i++) {
@@ -259,13 +259,13 @@ static bool count_outside(secular *s, double distance, told *t) {
   return false;
 }
 
-static bool all_told(const secular *s, const told *t) {
+static bool all_counted(const secular *s, const multiplier_counts *t) {
   return t->on_circle + t->outside >= s->particles;
 }
 
 /* Multipliers within `band` of 1 besides the trivial ones, on the circle or off it: by winding around 1. There rounding
  * decides about signs, and the circle is looked at beyond. Where a pole is as close, on the circle only. */
-static void look_near_one(secular *s, double band, told *t) {
+static void count_near_one(secular *s, double band, multiplier_counts *t) {
   if (winding_box(s, CMPLX(-band, -band), CMPLX(band, band), &t->near_one)) {
     t->from = t->near_one > 0 ? band : 0;
     return;
@@ -276,22 +276,22 @@ static void look_near_one(secular *s, double band, told *t) {
 
 /* Contours that come closer to the circle and bounds on it that become sharper, until nothing is left between. A search
  * of the circle comes last: what is outside decides without it. */
-static ric_status tell(secular *s, const ric_orbit_multiplier_options *o, told *t, ric_error *error) {
+static ric_status count_all(secular *s, const ric_orbit_multiplier_options *o, multiplier_counts *t, ric_error *error) {
   static const int depth[] = {4, 40};
   const double distances[] = {fmax(0.1, o->judge.band), fmax(1e-3, o->judge.band), o->judge.band};
-  *t = (told){0};
-  look_near_one(s, o->judge.band_at_one, t);
+  *t = (multiplier_counts){0};
+  count_near_one(s, o->judge.band_at_one, t);
   size_t close = 1 + (t->from > 0 ? t->near_one / 2 : 0); /* pairs */
-  for (int stage = 0; stage < 3 && !all_told(s, t); stage++) {
+  for (int stage = 0; stage < 3 && !all_counted(s, t); stage++) {
     if (stage < 2)
       t->on_circle = close + unit_circle_count(s, t->from, depth[stage]);
-    bool counted = all_told(s, t) || count_outside(s, distances[stage], t);
+    bool counted = all_counted(s, t) || count_outside(s, distances[stage], t);
     if (s->stopped)
       return ric_fail(error, RIC_ESTOPPED, "stopped at |mu| = 1 + %g", distances[stage]);
     if (!counted)
       return ric_fail(error, RIC_ENUMERIC, "winding number along |mu| = 1 + %g is not whole", distances[stage]);
   }
-  if (all_told(s, t) || t->outside > 0)
+  if (all_counted(s, t) || t->outside > 0)
     return RIC_OK;
   size_t found;
   RIC_TRY(unit_circle_find(s, t->from, s->particles - close, NULL, &found, error));
@@ -300,7 +300,7 @@ static ric_status tell(secular *s, const ric_orbit_multiplier_options *o, told *
 }
 
 /* Those beyond the farther contour, then those between the two. */
-static void locate(secular *s, const told *t, ric_multipliers *m) {
+static void locate(secular *s, const multiplier_counts *t, ric_multipliers *m) {
   size_t between = 0;
   m->count = 0;
   if (t->farther > 0)
@@ -351,16 +351,16 @@ static ric_status complete(secular *s, double from, const ric_orbit_multiplier_o
 
 ric_status determinant_multipliers(secular *s, const ric_orbit_multiplier_options *o, ric_multipliers *m,
                                    ric_error *error) {
-  told t;
+  multiplier_counts t;
   s->poll = o->poll;
   s->stopped = false;
-  RIC_TRY(tell(s, o, &t, error));
-  size_t n = s->particles, untold = t.on_circle + t.outside < n ? n - t.on_circle - t.outside : 0;
+  RIC_TRY(count_all(s, o, &t, error));
+  size_t n = s->particles, unlocated = t.on_circle + t.outside < n ? n - t.on_circle - t.outside : 0;
   locate(s, &t, m);
   if (s->stopped)
     return ric_fail(error, RIC_ESTOPPED, "stopped on the way to the multipliers outside");
   size_t missing = t.outside > m->count ? t.outside - m->count : 0;
-  multipliers_judge_outside(m, untold, t.near_one, &o->judge);
+  multipliers_judge_outside(m, unlocated, t.near_one, &o->judge);
   if (missing > t.near_one) {
     m->stable = RIC_UNSTABLE;
     m->outside = t.outside;

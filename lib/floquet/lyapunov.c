@@ -87,7 +87,7 @@ static void join(ric_run *whole, const ric_run *part) {
 }
 
 /* The tangent vectors at the end of a stride: factorised, their growth added when it counts. */
-static void take_stock(lyapunov_course *c, double length) {
+static void factorise_stride(lyapunov_course *c, double length) {
   size_t n = c->n, count = c->count;
   memcpy(c->vectors, ric_trajectory_dq(c->trajectory), n * count * sizeof *c->vectors);
   if (c->size > n)
@@ -102,7 +102,7 @@ static void take_stock(lyapunov_course *c, double length) {
 
 /* Vectors part by no more than e^7 in a stride: what is left of one that lies in the span of those before it has been
  * put out by a contact. */
-static void adapt(lyapunov_course *c) {
+static void adapt_stride(lyapunov_course *c) {
   double most = -INFINITY, least = INFINITY;
   for (size_t k = 0; k < c->count; k++)
     if (c->growth[k] > -INFINITY) {
@@ -147,8 +147,8 @@ static ric_status advance_course(lyapunov_course *c, double end, ric_run *whole,
   if (ric_trajectory_columns(c->trajectory) != c->count)
     return RIC_OK;
   /* Also of a stride that has not moved time: an observer may have ended it at an impact. */
-  take_stock(c, time_now(c) - start);
-  adapt(c);
+  factorise_stride(c, time_now(c) - start);
+  adapt_stride(c);
   if (time_now(c) >= c->mark || *over)
     *over |= report(c, whole);
   return RIC_OK;

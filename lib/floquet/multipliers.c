@@ -97,7 +97,8 @@ static void count_outside(ric_multipliers *m, const ric_complex *z, const ric_mu
     m->real_below++;
 }
 
-static finding look_at(ric_multipliers *m, const ric_complex *mu, size_t count, const ric_multiplier_options *o) {
+static finding evaluate_multiplier(ric_multipliers *m, const ric_complex *mu, size_t count,
+                                   const ric_multiplier_options *o) {
   finding f = {0};
   m->outside = m->real_above = m->real_below = m->complex_outside = 0;
   for (size_t i = 0; i < count; i++) {
@@ -115,7 +116,7 @@ static finding look_at(ric_multipliers *m, const ric_complex *mu, size_t count, 
   return f;
 }
 
-static void say_unstable(ric_multipliers *m, const ric_complex *z, bool real) {
+static void report_unstable(ric_multipliers *m, const ric_complex *z, bool real) {
   m->stable = RIC_UNSTABLE;
   if (real)
     snprintf(m->reason, sizeof m->reason, "multiplier %.9g lies %.3g outside the unit circle, %zu in all outside",
@@ -130,7 +131,7 @@ static void decide(ric_multipliers *m, const finding *f, const ric_multiplier_op
   m->reason[0] = '\0';
   m->stable = RIC_STABLE;
   if (f->unstable) {
-    say_unstable(m, f->unstable, is_real(f->unstable, o));
+    report_unstable(m, f->unstable, is_real(f->unstable, o));
     return;
   }
   if (f->at_one) {
@@ -147,7 +148,7 @@ static void decide(ric_multipliers *m, const finding *f, const ric_multiplier_op
 /* Farther from 1 than rounding splits a double 1, trivial multipliers are none. */
 static const double trivial_tol = 1e-3;
 
-static void look_at_trivial(ric_multipliers *m, size_t trivial) {
+static void evaluate_trivial(ric_multipliers *m, size_t trivial) {
   const ric_complex *z = trivial > 0 ? &m->mu[trivial - 1] : NULL;
   if (!z || m->stable != RIC_STABLE || distance_from_one(*z) <= trivial_tol)
     return;
@@ -169,9 +170,9 @@ void multipliers_judge(ric_multipliers *m, size_t trivial, const ric_multiplier_
   if (trivial < 2) /* no second pair can meet the double 1 */
     own.band_at_one = own.band;
   qsort(m->mu, m->count, sizeof *m->mu, by_distance_from_one);
-  finding f = look_at(m, m->mu + trivial, m->count - trivial, o);
+  finding f = evaluate_multiplier(m, m->mu + trivial, m->count - trivial, o);
   decide(m, &f, o);
-  look_at_trivial(m, trivial);
+  evaluate_trivial(m, trivial);
   if (!f.outermost)
     m->margin = 0; /* nothing besides those at 1 */
   multipliers_sort(m);
@@ -179,12 +180,12 @@ void multipliers_judge(ric_multipliers *m, size_t trivial, const ric_multiplier_
   m->log_determinant = log_determinant(m);
 }
 
-void multipliers_judge_outside(ric_multipliers *m, size_t untold, size_t near_one, const ric_multiplier_options *o) {
+void multipliers_judge_outside(ric_multipliers *m, size_t unlocated, size_t near_one, const ric_multiplier_options *o) {
   multipliers_sort(m);
-  finding f = look_at(m, m->mu, m->count, o);
+  finding f = evaluate_multiplier(m, m->mu, m->count, o);
   decide(m, &f, o);
   m->largest = m->count > 0 ? modulus(m->mu[0]) : 1;
-  if (m->count == 0 && untold == 0)
+  if (m->count == 0 && unlocated == 0)
     m->margin = 0;
   if (m->stable != RIC_STABLE)
     return;
@@ -192,10 +193,10 @@ void multipliers_judge_outside(ric_multipliers *m, size_t untold, size_t near_on
     m->stable = RIC_UNDECIDED;
     snprintf(m->reason, sizeof m->reason, "%zu multipliers besides the trivial ones lie less than %.3g from 1",
              near_one, o->band_at_one);
-  } else if (untold > 0) {
+  } else if (unlocated > 0) {
     m->stable = RIC_UNDECIDED;
     snprintf(m->reason, sizeof m->reason, "%zu multipliers are not told from the unit circle, within %.3g of it",
-             untold, o->band);
+             unlocated, o->band);
   }
 }
 

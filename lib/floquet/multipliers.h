@@ -18,7 +18,7 @@ void multipliers_judge(ric_multipliers *multipliers, size_t trivial, const ric_m
 /** The same when mu [count] holds only those outside the circle, and none that is 1 for any motion.
  *  @param untold  how many of the others are not known to lie on the circle or in it
  *  @param near_one  how many of the others lie within band_at_one of 1 */
-void multipliers_judge_outside(ric_multipliers *multipliers, size_t untold, size_t near_one,
+void multipliers_judge_outside(ric_multipliers *multipliers, size_t unlocated, size_t near_one,
                                const ric_multiplier_options *options);
 
 /** Sorts mu [count] as the public header says. */

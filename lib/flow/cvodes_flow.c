@@ -25,7 +25,7 @@ enum { CVODES_ORDER = 12 };
 /** Tangent vectors in CVODES' forward sensitivity analysis (staggered, under the error control of the state). */
 typedef struct cvodes_tangents {
   size_t columns;   /* there is room for, and CVODES knows of; 0: none */
-  bool carried;     /* they take part */
+  bool active;      /* they take part */
   N_Vector *vector; /* [columns] */
   SUNNonlinearSolver iteration;
   double *absolute;     /* [columns] tolerances */
@@ -173,7 +173,7 @@ static const char *cvodes_solver_restart(cvodes_solver *s, double t) {
   s->origin = t;
   if (CVodeReInit(s->memory, 0, s->y))
     return "CVODES refuses to start";
-  return s->tangents.carried ? cvodes_tangents_restart(s) : NULL;
+  return s->tangents.active ? cvodes_tangents_restart(s) : NULL;
 }
 
 static const char *text_of(int code) {
@@ -281,14 +281,14 @@ static int set_up_sensitivities(cvodes_solver *s) {
 
 /** Makes room for tangent vectors; 0: none any more, whose room stays for as many again. A restart must follow. */
 static ric_status cvodes_solver_carry(cvodes_solver *s, size_t columns, ric_error *error) {
-  s->tangents.carried = columns > 0;
+  s->tangents.active = columns > 0;
   if (columns == 0 && s->tangents.columns > 0)
     CVodeSensToggleOff(s->memory); /* the next restart with them turns them on */
   if (columns == 0 || columns == s->tangents.columns)
     return RIC_OK;
   cvodes_tangents_clear(s);
   RIC_TRY(allocate_sensitivities(s, columns, error));
-  s->tangents.carried = true;
+  s->tangents.active = true;
   if (set_up_sensitivities(s) == 0)
     return RIC_OK;
   cvodes_tangents_clear(s);
@@ -392,7 +392,7 @@ static ric_status start(ric_flow *flow, ric_error *error) {
 }
 
 /* The solver at the flow's state, when it is not there yet or time is to turn round. */
-static const char *catch_up(cvodes_flow *f, double stop) {
+static const char *synchronise_solver(cvodes_flow *f, double stop) {
   ric_flow *flow = &f->base;
   size_t n = flow->system->coordinates, m = flow->system->speeds;
   int direction = stop > flow->time ? 1 : -1;
@@ -410,7 +410,7 @@ static const char *catch_up(cvodes_flow *f, double stop) {
 }
 
 /* A way to `stop` that is lost in the rounding of time: straight on. */
-static const char *creep(cvodes_flow *f, double stop) {
+static const char *step_straight(cvodes_flow *f, double stop) {
   ric_flow *flow = &f->base;
   size_t n = flow->system->coordinates, m = flow->system->speeds;
   double *slope = f->coef + n + m;
@@ -432,7 +432,7 @@ static const char *advance_solver(cvodes_flow *f, double stop) {
   ric_flow *flow = &f->base;
   size_t n = flow->system->coordinates, m = flow->system->speeds;
   double t = flow->time;
-  const char *trouble = catch_up(f, stop);
+  const char *trouble = synchronise_solver(f, stop);
   if (!trouble)
     trouble = cvodes_solver_step(&f->solver, stop, &t);
   if (trouble)
@@ -454,7 +454,7 @@ static ric_status cvodes_step(ric_flow *flow, double stop, ric_error *error) {
   bool lost = fabs(stop - flow->time) <= 256 * DBL_EPSILON * fmax(span, fmax(fabs(stop), fabs(flow->time)));
   f->solver.trouble_time = flow->time;
   f->whole = f->callback_failed = false;
-  const char *trouble = f->trouble ? f->trouble : lost ? creep(f, stop) : advance_solver(f, stop);
+  const char *trouble = f->trouble ? f->trouble : lost ? step_straight(f, stop) : advance_solver(f, stop);
   f->restart = true; /* unless the whole step is accepted */
   if (!trouble)
     return RIC_OK;

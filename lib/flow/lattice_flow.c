@@ -192,7 +192,7 @@ static ric_segment piece(ric_flow *flow, size_t index) {
 }
 
 /* A linear motion grows by less than exp(2.2) per coefficient in a step of the bound: the start says it all. */
-static taylor_decay look_at_start(const lattice_flow *f, double length) {
+static taylor_decay evaluate_start(const lattice_flow *f, double length) {
   double size = taylor_largest(f->base.q, f->lattice->particles);
   size += fabs(length) * taylor_largest(f->base.u, f->lattice->particles);
   return (taylor_decay){.change = size < 1e290 ? size : NAN, .nearest_zero = INFINITY};
@@ -204,7 +204,7 @@ static taylor_decay expand(ric_flow *flow, double length) {
   f->made = SIZE_MAX;
   f->ended = 0;
   if (f->stepper.by_bound && f->acting_count == 0 && fabs(length) <= f->stepper.longest)
-    return look_at_start(f, length);
+    return evaluate_start(f, length);
   taylor_decay all = {.nearest_zero = INFINITY};
   for (size_t i = 0; i < flow->pieces; i++) {
     make(f, i, length);
@@ -265,7 +265,7 @@ static double coordinate_at(ric_flow *flow, size_t i, double x) {
 }
 
 /* What contacts do to the tangent vectors whose force was left out of the step. */
-static void kick(ric_flow *flow, const lattice_press *p, double x) {
+static void apply_omitted_forces(ric_flow *flow, const lattice_press *p, double x) {
   const lattice_flow *f = self(flow);
   size_t i = p->coordinate, columns = flow->tangent.columns;
   double start = p->side * (p->position - flow->q[i]), end = p->side * (p->position - coordinate_at(flow, i, x));
@@ -288,7 +288,7 @@ static void transport(ric_flow *flow, double x) {
   lattice_variation_transport(f->variation, &contacts, &flow->tangent);
   for (size_t k = 0; k < f->pressed_count; k++)
     if (!lattice_flow_acts(f, &f->pressed[k]))
-      kick(flow, &f->pressed[k], x);
+      apply_omitted_forces(flow, &f->pressed[k], x);
 }
 
 static void destroy(ric_flow *flow) {

@@ -89,7 +89,7 @@ static void add_pressure_slope(const mck_flow *f, int j, double *acceleration) {
 }
 
 /* What contacts do whose force was left out of the step. */
-static void kick(const mck_flow *f, double x, double h, const double *q, double *u) {
+static void apply_omitted_forces(const mck_flow *f, double x, double h, const double *q, double *u) {
   for (size_t k = 0; k < f->pressed_count; k++) {
     const pressed_contact *c = &f->pressed[k];
     size_t i = c->obstacle->coordinate;
@@ -140,7 +140,7 @@ static void move(mck_flow *f, double x, size_t k) {
     u[f->hold.coordinate[i]] = 0;
   raise_levels(f, h);
   add_up(f, h, q, u);
-  kick(f, x, h, q, u);
+  apply_omitted_forces(f, x, h, q, u);
   for (size_t i = 0; i < n; i++) {
     d->q[i * columns + k] = q[i];
     d->u[i * columns + k] = u[i];

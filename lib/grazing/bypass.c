@@ -129,7 +129,7 @@ struct ric_bypass {
   size_t obstacle, size; /* n + m */
   double reach;
   arc_runner runner;
-  bool short_ways; /* short ways are not for the flow to move */
+  bool short_intervals; /* short ways are not for the flow to move */
   gragg gragg;
   gap_search search;
   impact_solver law;
@@ -149,13 +149,13 @@ static void gap_search_clear(gap_search *s) {
 }
 
 /* One search along the motion; slopes are those along it, against time when it runs backwards. */
-typedef struct way {
+typedef struct gap_path {
   gap_search *s;
   bool opening;        /* else a minimum */
   double level, slope; /* of the gap, where the last part ended */
   double time;         /* found */
   const char *trouble;
-} way;
+} gap_path;
 
 /* The gap [degree + 2] on a part, from its rate there. */
 static int integrate(const gap_part *rate, double length, double level, double *c) {
@@ -166,7 +166,7 @@ static int integrate(const gap_part *rate, double length, double level, double *
   return rate->degree + 1;
 }
 
-static bool finds(const way *w, const double *c, int degree, double *at) {
+static bool finds(const gap_path *w, const double *c, int degree, double *at) {
   double value, below[RIC_POLY_DEGREE + 2];
   if (w->opening) {
     for (int j = 0; j <= degree; j++)
@@ -180,7 +180,7 @@ static bool finds(const way *w, const double *c, int degree, double *at) {
   return ric_poly_first_minimum(c, degree, INFINITY, at, &value);
 }
 
-static bool look_at_part(way *w, const ric_segment *piece, const gap_part *rate) {
+static bool search_part(gap_path *w, const ric_segment *piece, const gap_part *rate) {
   double c[RIC_POLY_DEGREE + 2], at;
   int degree = integrate(rate, piece->length, w->level, c);
   if (finds(w, c, degree, &at)) {
@@ -192,19 +192,19 @@ static bool look_at_part(way *w, const ric_segment *piece, const gap_part *rate)
 }
 
 /* Whether it is found on [from, to] of a piece, or there is trouble. */
-static bool search_segment(way *w, const ric_segment *piece, double from, double to, double before, int halvings) {
+static bool search_segment(gap_path *w, const ric_segment *piece, double from, double to, double before, int halvings) {
   gap_part rate;
   w->trouble = gap_read(&w->s->reader, piece, w->s->obstacle, WATCH_RATE, from, to, &rate);
   if (w->trouble)
     return true;
   if (gap_is_resolved(&rate, before) || halvings == 0)
-    return look_at_part(w, piece, &rate);
+    return search_part(w, piece, &rate);
   double middle = (from + to) / 2;
   return search_segment(w, piece, from, middle, rate.residual, halvings - 1) ||
          search_segment(w, piece, middle, to, rate.residual, halvings - 1);
 }
 
-static bool look_at_step(way *w) {
+static bool search_step(gap_path *w) {
   ric_flow *flow = w->s->flow;
   const ric_system *system = flow->system;
   for (size_t i = 0; i < ric_flow_pieces(flow); i++) {
@@ -219,7 +219,7 @@ static bool look_at_step(way *w) {
   return false;
 }
 
-static ric_status search_way(way *w, double t, const double *x, double span, ric_error *error) {
+static ric_status search_interval(gap_path *w, double t, const double *x, double span, ric_error *error) {
   ric_flow *flow = w->s->flow;
   double end = t + span;
   RIC_TRY(ric_flow_start(flow, t, x, x + flow->system->coordinates, error));
@@ -228,7 +228,7 @@ static ric_status search_way(way *w, double t, const double *x, double span, ric
     if (status == RIC_ENUMERIC) /* nothing is to be found where the motion ends */
       return RIC_OK;
     RIC_TRY(status);
-    if (look_at_step(w))
+    if (search_step(w))
       break;
     ric_flow_accept(flow, 1);
   }
@@ -244,8 +244,8 @@ static ric_status search_way(way *w, double t, const double *x, double span, ric
  *  @returns RIC_ECALLBACK, RIC_EINVAL as ric_flow_start. */
 static ric_status gap_search_minimum(gap_search *s, double t, const double *x, double span, double rate, double *time,
                                      ric_error *error) {
-  way w = {.s = s, .slope = copysign(1, span) * rate, .time = NAN};
-  RIC_TRY(search_way(&w, t, x, span, error));
+  gap_path w = {.s = s, .slope = copysign(1, span) * rate, .time = NAN};
+  RIC_TRY(search_interval(&w, t, x, span, error));
   *time = w.time;
   return RIC_OK;
 }
@@ -253,8 +253,8 @@ static ric_status gap_search_minimum(gap_search *s, double t, const double *x, d
 /** First time at which the gap, `depth` <= 0 at the state, is zero again; parameters as above. */
 static ric_status gap_search_opening(gap_search *s, double t, const double *x, double span, double depth, double *time,
                                      ric_error *error) {
-  way w = {.s = s, .opening = true, .level = depth, .time = NAN};
-  RIC_TRY(search_way(&w, t, x, span, error));
+  gap_path w = {.s = s, .opening = true, .level = depth, .time = NAN};
+  RIC_TRY(search_interval(&w, t, x, span, error));
   *time = w.time;
   return RIC_OK;
 }
@@ -264,7 +264,7 @@ static ric_status gap_search_opening(gap_search *s, double t, const double *x, d
 static const double near_part = 1e-6;
 
 /* A minimum that Newton's method does not settle within this part of the reach is none. */
-static const double settled_part = 1e-6;
+static const double converged_part = 1e-6;
 
 /* An impact may leave the gap rate below zero by this, as a part of what it was, and absolutely: rates of users' gaps
  * come from differences. */
@@ -295,7 +295,7 @@ static ric_status check_bypass(const ric_system *system, size_t obstacle, const 
 
 static ric_status build_bypass(ric_bypass *b, const ric_bypass_options *options, ric_error *error) {
   RIC_TRY(arc_runner_init(&b->runner, b->system, &options->flow, (ric_poll){0}, error));
-  b->short_ways = arc_runner_flow(&b->runner)->options.method == RIC_FLOW_CVODES;
+  b->short_intervals = arc_runner_flow(&b->runner)->options.method == RIC_FLOW_CVODES;
   RIC_TRY(gragg_init(&b->gragg, b->system, error));
   RIC_TRY(gap_search_init(&b->search, arc_runner_flow(&b->runner), b->obstacle, error));
   RIC_TRY(impact_solver_init(&b->law, b->system, error));
@@ -343,7 +343,7 @@ ric_status ric_bypass_create(ric_system *system, size_t obstacle, const ric_bypa
 /* Along the free motion. */
 static ric_status move_to(ric_bypass *b, double time, ric_error *error) {
   double tolerance = gragg_part * arc_runner_flow(&b->runner)->options.tolerance, from = b->time;
-  if (b->short_ways && gragg_move(&b->gragg, from, time - from, b->x, tolerance)) {
+  if (b->short_intervals && gragg_move(&b->gragg, from, time - from, b->x, tolerance)) {
     b->time = time;
     return RIC_OK;
   }
@@ -358,7 +358,7 @@ static ric_status read_rates(ric_bypass *b, double *rate, double *acceleration, 
 
 static ric_status read_gap(const ric_bypass *b, double *gap, ric_error *error) {
   const char *trouble = b->system->model->gap(b->system, b->obstacle, b->time, b->x, gap);
-  return trouble ? grazing_blame(b->time, b->obstacle, trouble, error) : RIC_OK;
+  return trouble ? grazing_callback_error(b->time, b->obstacle, trouble, error) : RIC_OK;
 }
 
 /* The minimum nearest in time, NaN without one: downhill first, then uphill, as far as it would be nearer there. */
@@ -381,8 +381,8 @@ static ric_status find_nearest(ric_bypass *b, double *time, ric_error *error) {
 }
 
 /* Newton's method on the gap rate, until rounding is all that is left of it. */
-static ric_status settle_minimum(ric_bypass *b, double *curvature, ric_error *error) {
-  double rate, last = INFINITY, least = settled_part * b->reach;
+static ric_status refine_minimum(ric_bypass *b, double *curvature, ric_error *error) {
+  double rate, last = INFINITY, least = converged_part * b->reach;
   for (int k = 0; k < NEWTON_STEPS; k++) {
     RIC_TRY(read_rates(b, &rate, curvature, error));
     double step = -rate / *curvature;
@@ -401,7 +401,7 @@ static ric_status settle_minimum(ric_bypass *b, double *curvature, ric_error *er
 }
 
 /* Leaves b->x at the minimum. */
-static ric_status go_to_minimum(ric_bypass *b, double t, const double *x, ric_bypass_seen *seen, ric_error *error) {
+static ric_status move_to_minimum(ric_bypass *b, double t, const double *x, ric_bypass_seen *seen, ric_error *error) {
   double time;
   size_t n = b->system->coordinates;
   RIC_TRY(ric_flow_start(arc_runner_flow(&b->runner), t, x, x + n, error)); /* refuses what is not finite */
@@ -413,21 +413,21 @@ static ric_status go_to_minimum(ric_bypass *b, double t, const double *x, ric_by
                     b->reach, t);
   RIC_TRY(move_to(b, time, error));
   *seen = (ric_bypass_seen){.t_C = NAN};
-  RIC_TRY(settle_minimum(b, &seen->curvature, error));
+  RIC_TRY(refine_minimum(b, &seen->curvature, error));
   seen->tau = b->time - t;
   return read_gap(b, &seen->psi, error);
 }
 
 ric_status ric_bypass_look(ric_bypass *b, double t, const double *x, ric_bypass_seen *seen, ric_error *error) {
   ric_bypass_seen found;
-  RIC_TRY(go_to_minimum(b, t, x, &found, error));
+  RIC_TRY(move_to_minimum(b, t, x, &found, error));
   *seen = found;
   return RIC_OK;
 }
 
 /* Newton's method on the gap, from where the search has found it open. So near to grazing that the gap's rounding
  * decides about the time, the search knows better: it has the rates. */
-static ric_status settle_contact(ric_bypass *b, double tau, ric_error *error) {
+static ric_status refine_contact(ric_bypass *b, double tau, ric_error *error) {
   double rate, gap, last = fabs(b->time - tau) / 4;
   for (int k = 0; k < NEWTON_STEPS; k++) {
     RIC_TRY(read_gap(b, &gap, error));
@@ -442,7 +442,7 @@ static ric_status settle_contact(ric_bypass *b, double tau, ric_error *error) {
 }
 
 /* From the minimum back to where the obstacle is reached, [FN97] (4.11) with the minus sign: on the way in. */
-static ric_status go_to_contact(ric_bypass *b, const ric_bypass_seen *seen, ric_error *error) {
+static ric_status move_to_contact(ric_bypass *b, const ric_bypass_seen *seen, ric_error *error) {
   double time, tau = b->time;
   RIC_TRY(gap_search_opening(&b->search, tau, b->x, -b->reach, seen->psi, &time, error));
   if (isnan(time))
@@ -450,7 +450,7 @@ static ric_status go_to_contact(ric_bypass *b, const ric_bypass_seen *seen, ric_
                     "obstacle %zu: the gap is %.3g at its minimum, t = %g, and does not open within %g before it",
                     b->obstacle, seen->psi, tau, b->reach);
   RIC_TRY(move_to(b, time, error));
-  return settle_contact(b, tau, error);
+  return refine_contact(b, tau, error);
 }
 
 static ric_status hit(ric_bypass *b, double *gap_rate, ric_error *error) {
@@ -467,9 +467,9 @@ static ric_status hit(ric_bypass *b, double *gap_rate, ric_error *error) {
 ric_status ric_bypass_map(ric_bypass *b, double t, const double *x, double *image, ric_bypass_seen *seen,
                           ric_error *error) {
   ric_bypass_seen found;
-  RIC_TRY(go_to_minimum(b, t, x, &found, error));
+  RIC_TRY(move_to_minimum(b, t, x, &found, error));
   if (found.psi <= 0) { /* [FN97] (4.2) */
-    RIC_TRY(go_to_contact(b, &found, error));
+    RIC_TRY(move_to_contact(b, &found, error));
     found.t_C = b->time - t;
     RIC_TRY(hit(b, &found.gap_rate, error));
     RIC_TRY(move_to(b, t, error));
@@ -485,7 +485,7 @@ ric_status ric_bypass_leading(ric_bypass *b, const ric_grazing_local *at_grazing
                               double *image, ric_bypass_seen *seen, ric_error *error) {
   ric_bypass_seen found;
   RIC_TRY(grazing_check_local(at_grazing, b->system, error));
-  RIC_TRY(go_to_minimum(b, t, x, &found, error));
+  RIC_TRY(move_to_minimum(b, t, x, &found, error));
   double y = sqrt(fmax(-found.psi, 0)), s = sqrt(2 * at_grazing->acceleration);
   for (size_t i = 0; i < b->size; i++)
     image[i] = x[i] + y * s * at_grazing->xi[i]; /* [FN97] (4.19) */

@@ -249,7 +249,7 @@ static bool tail_is_proved(criterion_work *w) {
 }
 
 /* Goes through the coefficients until one is negative, or the rest are positive, or there are no more to look at. */
-static void look_at_coefficients(criterion_work *w, ric_grazing_criterion *c) {
+static void check_coefficients(criterion_work *w, ric_grazing_criterion *c) {
   coefficient_run *run = &w->run;
   for (;;) {
     int sign = coefficient_run_sign(run, w->options->zero_tol);
@@ -297,7 +297,7 @@ static bool spectrum_fails(const criterion_work *w, ric_grazing_criterion *c) {
              c->second);
   else if (d->value.re < 0)
     snprintf(c->reason, sizeof c->reason, "the dominant multiplier %s is negative", name);
-  else if (!dominant_is_told(d))
+  else if (!dominant_is_resolved(d))
     snprintf(c->reason, sizeof c->reason,
              "the dominant multiplier %s is not told from others: rounding reaches %.3g of the distance", name,
              d->accuracy);
@@ -311,9 +311,9 @@ static bool component_fails(const criterion_work *w, ric_grazing_criterion *c) {
   const dominant_multiplier *d = &w->dominant;
   if (dominant_is_coupled(d))
     return false;
-  bool seen = fabs(d->seen) > d->seen_tol;
+  bool observed = fabs(d->observed) > d->observed_tol;
   snprintf(c->reason, sizeof c->reason, "%s the eigenvector of the dominant multiplier %.9g",
-           seen ? "xi does not excite" : "eta does not see", c->dominant.re);
+           observed ? "xi does not excite" : "eta does not see", c->dominant.re);
   return true;
 }
 
@@ -365,10 +365,10 @@ static void decide(const criterion_work *w, ric_grazing_criterion *c) {
 static void describe_dominant(criterion_work *w, ric_grazing_criterion *c) {
   const dominant_multiplier *d = &w->dominant;
   long exponent = w->map.L_exponent;
-  bool known = d->real && d->alone && dominant_is_told(d);
+  bool known = d->real && d->alone && dominant_is_resolved(d);
   c->dominant = (ric_complex){scalbln(d->value.re, exponent), scalbln(d->value.im, exponent)};
   c->second = scalbln(d->second, exponent);
-  w->alpha = known ? d->seen * d->driven : NAN;
+  w->alpha = known ? d->observed * d->excited : NAN;
   c->alpha = scalbln(w->alpha, w->map.c_exponent);
 }
 
@@ -388,7 +388,7 @@ static ric_status decide_criterion(criterion_work *w, const ric_grazing_map *map
     RIC_TRY(tail_proof_init(&w->tail, &w->map, &w->dominant, error));
     w->provable = w->tail.contracting && dominant_is_coupled(&w->dominant);
   }
-  look_at_coefficients(w, c);
+  check_coefficients(w, c);
   decide(w, c);
   return RIC_OK;
 }

@@ -112,12 +112,12 @@ static const double accuracy_tol = 1e-3;
 /* Rounding in eigenproblems of size n, in units of n: ten times and more what is observed. */
 static const double rounding_unit = 10 * DBL_EPSILON;
 
-bool dominant_is_told(const dominant_multiplier *d) {
+bool dominant_is_resolved(const dominant_multiplier *d) {
   return d->accuracy <= accuracy_tol;
 }
 
 bool dominant_is_coupled(const dominant_multiplier *d) {
-  return fabs(d->seen) > d->seen_tol && fabs(d->driven) > d->driven_tol;
+  return fabs(d->observed) > d->observed_tol && fabs(d->excited) > d->excited_tol;
 }
 
 void dominant_clear(dominant_multiplier *d) {
@@ -198,14 +198,14 @@ static double dot_moduli(const double *x, const double *y, size_t n) {
 static void evaluate_components(dominant_multiplier *d, const balanced_map *map, double condition, double zero_tol) {
   size_t n = map->n;
   double rounding = 100 * d->accuracy;
-  double of_seen = zero_tol * dot_moduli(map->eta, d->right, n);
-  double of_driven = zero_tol * dot_moduli(d->left, map->xi, n);
-  d->seen = dot(map->eta, d->right, n);
-  d->driven = dot(d->left, map->xi, n);
-  d->seen_tol = fmax(of_seen, rounding * sqrt(dot(map->eta, map->eta, n)));
-  d->driven_tol = fmax(of_driven, rounding * condition * sqrt(dot(map->xi, map->xi, n)));
-  if (dominant_is_told(d))
-    d->vague = fabs(d->seen) * of_driven + fabs(d->driven) * of_seen + of_seen * of_driven;
+  double of_observed = zero_tol * dot_moduli(map->eta, d->right, n);
+  double of_excited = zero_tol * dot_moduli(d->left, map->xi, n);
+  d->observed = dot(map->eta, d->right, n);
+  d->excited = dot(d->left, map->xi, n);
+  d->observed_tol = fmax(of_observed, rounding * sqrt(dot(map->eta, map->eta, n)));
+  d->excited_tol = fmax(of_excited, rounding * condition * sqrt(dot(map->xi, map->xi, n)));
+  if (dominant_is_resolved(d))
+    d->uncertain = fabs(d->observed) * of_excited + fabs(d->excited) * of_observed + of_observed * of_excited;
 }
 
 /* `gap`: the distance to other multipliers, or from L - lambda to a matrix with two of them, if that is less. */
@@ -293,7 +293,7 @@ ric_status coefficient_run_init(coefficient_run *run, const balanced_map *map, c
   size_t n = map->n, used = 0;
   double *block = balanced_map_room(n, 1, 3);
   double modulus = dominant->modulus;
-  *run = (coefficient_run){.map = map, .modulus = modulus, .vague = log2(dominant->vague)};
+  *run = (coefficient_run){.map = map, .modulus = modulus, .uncertain = log2(dominant->uncertain)};
   if (!block)
     return ric_fail(error, RIC_ENOMEM, "no memory for the coefficients of a map of size %zu", n);
   run->x = number_block_take(block, &used, n);
@@ -353,15 +353,15 @@ static double noise_of(const noise_bound *noise) {
 }
 
 /* Of the dominant multiplier's part. */
-static double vague_part(const coefficient_run *run) {
-  double reach = run->vague - (double)run->x_exponent;
+static double uncertain_part(const coefficient_run *run) {
+  double reach = run->uncertain - (double)run->x_exponent;
   return exp2(run->i > 0 ? reach + (double)run->i * log2(run->modulus) : reach);
 }
 
 int coefficient_run_sign(const coefficient_run *run, double zero_tol) {
   double unit = fmax((double)run->map->n * DBL_EPSILON, entry_tol);
   double noise = run->i > 0 ? unit * fmin(noise_of(&run->noise[0]), noise_of(&run->noise[1])) : 0;
-  double tolerance = fmax(zero_tol, unit) * run->terms + noise + vague_part(run);
+  double tolerance = fmax(zero_tol, unit) * run->terms + noise + uncertain_part(run);
   if (!(fabs(run->value) > tolerance))
     return 0;
   return run->value > 0 ? 1 : -1;

@@ -40,13 +40,13 @@ typedef struct dominant_multiplier {
   bool alone;    /* no other is as large, to apart_tol, but for the conjugate of a complex one */
 
   /* Only where it is real and alone: */
-  double *right, *left;        /* [n] eigenvectors, left . right = 1 */
-  double rounding;             /* over the modulus: size of the change of L for which they are exact */
-  double accuracy;             /* of them: what this is relative to the distance from other multipliers */
-  double seen, driven;         /* eta right, left xi */
-  double seen_tol, driven_tol; /* below which they are zero */
-  double vague;                /* how much of their product is not there if one of them is off by zero_tol of its terms;
-                                  0 where they are not told */
+  double *right, *left;             /* [n] eigenvectors, left . right = 1 */
+  double rounding;                  /* over the modulus: size of the change of L for which they are exact */
+  double accuracy;                  /* of them: what this is relative to the distance from other multipliers */
+  double observed, excited;         /* eta right, left xi */
+  double observed_tol, excited_tol; /* below which they are zero */
+  double uncertain; /* how much of their product is not there if one of them is off by zero_tol of its terms;
+                   0 where they are not told */
 } dominant_multiplier;
 
 /** Errors handled by GSL must be off.
@@ -56,7 +56,7 @@ ric_status dominant_find(dominant_multiplier *dominant, const balanced_map *map,
 void dominant_clear(dominant_multiplier *dominant);
 
 /** Whether rounding is small enough for what follows from its eigenvectors. */
-bool dominant_is_told(const dominant_multiplier *dominant);
+bool dominant_is_resolved(const dominant_multiplier *dominant);
 
 /** Whether eta and xi certainly see its eigenvectors. */
 bool dominant_is_coupled(const dominant_multiplier *dominant);
@@ -87,10 +87,10 @@ typedef struct coefficient_run {
   double *x, *row; /* [n] L^i xi and eta L^i, over powers of two that keep their largest entries in [1/2, 1) */
   double *next;    /* [n] work */
   long x_exponent, row_exponent;
-  double value;   /* c_i and ... */
-  double terms;   /* ... the sum of the moduli of its terms, over 2^x_exponent */
-  double modulus; /* |lambda| */
-  double vague;   /* log2 of that of the dominant multiplier */
+  double value;     /* c_i and ... */
+  double terms;     /* ... the sum of the moduli of its terms, over 2^x_exponent */
+  double modulus;   /* |lambda| */
+  double uncertain; /* log2 of that of the dominant multiplier */
   noise_bound noise[2];
 } coefficient_run;
 

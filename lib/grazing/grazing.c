@@ -123,20 +123,20 @@ static ric_status degenerate_acceleration(const gap_minimum *k, double period, d
 }
 
 /* What an event-driven run meets that is not the touch itself. */
-typedef struct meetings {
+typedef struct contact_record {
   const ric_grazing *g;
   double slowest; /* gap rates of transversal impacts are larger */
   char found[160];
-} meetings;
+} contact_record;
 
-static bool is_touch(const ric_grazing *g, const ric_event *e) {
+static bool is_grazing_contact(const ric_grazing *g, const ric_event *e) {
   const double apart = fabs(remainder(e->time - g->time, g->period));
   return e->obstacle == g->local.obstacle && apart <= same_time_tol * g->period;
 }
 
-static int see_contact(const ric_event *e, void *user) {
-  meetings *w = user;
-  if (is_touch(w->g, e))
+static int on_contact(const ric_event *e, void *user) {
+  contact_record *w = user;
+  if (is_grazing_contact(w->g, e))
     return 0;
   if (e->kind == RIC_EVENT_GRAZING)
     snprintf(w->found, sizeof w->found, "two grazing points at once: obstacle %zu comes within %.3g at t = %g, too",
@@ -148,9 +148,9 @@ static int see_contact(const ric_event *e, void *user) {
   return w->found[0] != 0;
 }
 
-static ric_status run_trajectory(ric_trajectory *t, const ric_shooting *s, const double *x, double from, meetings *w,
-                                 ric_error *error) {
-  const ric_observer observer = {.event = see_contact, .user = w};
+static ric_status run_trajectory(ric_trajectory *t, const ric_shooting *s, const double *x, double from,
+                                 contact_record *w, ric_error *error) {
+  const ric_observer observer = {.event = on_contact, .user = w};
   ric_run run;
   RIC_TRY(ric_trajectory_start(t, from, x, x + s->arcs.coordinates, error));
   RIC_TRY(ric_trajectory_run(t, from + w->g->period * (1 - same_time_tol), &observer, &run, error));
@@ -163,7 +163,7 @@ static ric_status run_trajectory(ric_trajectory *t, const ric_shooting *s, const
 static ric_status degenerate_motion(ric_family *f, const double *z, const ric_grazing *g, double size,
                                     const ric_grazing_options *o, ric_error *error) {
   ric_shooting *s = f->shooting;
-  meetings w = {.g = g, .slowest = o->transversal * size / g->period};
+  contact_record w = {.g = g, .slowest = o->transversal * size / g->period};
   ric_trajectory_options options = ric_trajectory_options_default();
   ric_trajectory *t = NULL;
   options.flow = f->problem.motion.flow;
@@ -460,8 +460,8 @@ static ric_status find_criterion(tracer *t, const ric_family_curve_point *p, ric
   ric_family *f = t->f;
   ric_grazing *g = &t->grazing;
   const size_t obstacle = g->local.obstacle;
-  const shooting_gaps *gaps = f->shooting->gaps; /* of the point's orbit: where the gap is zero on the curve */
-  const gap_found *least = gaps->hit[obstacle] ? &gaps->own : &gaps->free;
+  const system_gaps *gaps = &f->shooting->gaps; /* of the point's orbit: where the gap is zero on the curve */
+  const gap_found *least = gaps->hit[obstacle] ? &gaps->watch.own : &gaps->watch.free;
   gap_minimum at = {.obstacle = obstacle, .time = least->time, .x = g->x, .rates = t->rates};
   if (least->obstacle != obstacle)
     return ric_fail(error, RIC_ENUMERIC, "obstacle %zu is touched where obstacle %zu was", least->obstacle, obstacle);

@@ -100,7 +100,7 @@ static double depth_of_dip(double theta, void *user) {
 }
 
 /* The zero between two angles at which the signs differ. */
-static void take_zero(search *s, double low, double high) {
+static void refine_zero(search *s, double low, double high) {
   gsl_function f = {mismatch, s};
   if (s->count == s->orbits->map->size || gsl_root_fsolver_set(s->root, &f, low, high) != GSL_SUCCESS)
     return;
@@ -116,7 +116,7 @@ static void take_zero(search *s, double low, double high) {
 }
 
 /* Two zeros between grid points: where the function dips towards 0 without a change of its sign there. */
-static void look_into_dip(search *s, const double *theta, const double *value) {
+static void search_dip(search *s, const double *theta, const double *value) {
   s->sign = copysign(1, value[1]);
   gsl_function f = {depth_of_dip, s};
   if (gsl_min_fminimizer_set_with_values(s->least, &f, theta[1], fabs(value[1]), theta[0], fabs(value[0]), theta[2],
@@ -128,8 +128,8 @@ static void look_into_dip(search *s, const double *theta, const double *value) {
   if (!(gsl_min_fminimizer_f_minimum(s->least) < 0))
     return;
   double middle = gsl_min_fminimizer_x_minimum(s->least);
-  take_zero(s, theta[0], middle);
-  take_zero(s, middle, theta[2]);
+  refine_zero(s, theta[0], middle);
+  refine_zero(s, middle, theta[2]);
 }
 
 static void scan(search *s) {
@@ -141,10 +141,10 @@ static void scan(search *s) {
     theta[2] = fmin(fmax(pi * (double)i / (double)cells, end_angle), pi - end_angle);
     value[2] = mismatch(theta[2], s);
     if (i >= 1 && value[1] * value[2] <= 0 && value[1] != 0)
-      take_zero(s, theta[1], theta[2]);
+      refine_zero(s, theta[1], theta[2]);
     if (i >= 2 && fabs(value[1]) < fabs(value[0]) && fabs(value[1]) < fabs(value[2]) && value[0] * value[1] > 0 &&
         value[1] * value[2] > 0)
-      look_into_dip(s, theta, value);
+      search_dip(s, theta, value);
   }
 }
 

@@ -20,7 +20,7 @@ ric_status grazing_check_obstacle(const ric_system *system, size_t obstacle, ric
   return RIC_OK;
 }
 
-ric_status grazing_blame(double t, size_t obstacle, const char *trouble, ric_error *error) {
+ric_status grazing_callback_error(double t, size_t obstacle, const char *trouble, ric_error *error) {
   return ric_fail(error, RIC_ECALLBACK, "at t = %g, obstacle %zu: %s", t, obstacle, trouble);
 }
 
@@ -31,7 +31,7 @@ ric_status grazing_rates(const ric_system *s, size_t obstacle, double t, const d
   const char *trouble = s->model->gap_rate(s, obstacle, t, x, x + n, rate);
   if (!trouble)
     trouble = s->model->gap_acceleration(s, obstacle, t, x, x + n, rates, rates + n, acceleration);
-  return trouble ? grazing_blame(t, obstacle, trouble, error) : RIC_OK;
+  return trouble ? grazing_callback_error(t, obstacle, trouble, error) : RIC_OK;
 }
 
 ric_status grazing_check_local(const ric_grazing_local *local, const ric_system *system, ric_error *error) {
@@ -94,7 +94,7 @@ static const char *find_impulse(const ric_system *s, double t, const double *x, 
 }
 
 /* [FN97] (4.4)-(4.6) want a change of state that is smooth in the gap rate and vanishes with it. */
-static ric_status judge_map(size_t obstacle, const impact_slope *found, ric_error *error) {
+static ric_status check_map_slope(size_t obstacle, const impact_slope *found, ric_error *error) {
   if (!found->exists && !(found->power > 0.05))
     return ric_fail(error, RIC_EINVAL,
                     "obstacle %zu: the impact map moves the state by %.3g at the gap rate %.3g, expected one that "
@@ -116,9 +116,9 @@ static ric_status find_map(const ric_system *s, double t, const double *x, ric_g
   impact_slope found;
   const char *trouble = s->model->impact_slope(s, local->obstacle, t, x, local->xi, &found);
   if (trouble)
-    return grazing_blame(t, local->obstacle, trouble, error);
+    return grazing_callback_error(t, local->obstacle, trouble, error);
   local->restitution = found.turn - 1;
-  return judge_map(local->obstacle, &found, error);
+  return check_map_slope(local->obstacle, &found, error);
 }
 
 /* @param work  [3 (n + m)], zeros */
@@ -129,12 +129,12 @@ static ric_status find_all(const ric_system *s, double t, const double *x, doubl
   if (!trouble)
     trouble = s->model->gap(s, j, t, x, &local->gap);
   if (trouble)
-    return grazing_blame(t, j, trouble, error);
+    return grazing_callback_error(t, j, trouble, error);
   RIC_TRY(grazing_rates(s, j, t, x, work, &local->rate, &local->acceleration, error));
   if (!s->model->direction)
     return find_map(s, t, x, local, error);
   trouble = find_impulse(s, t, x, work + size, local);
-  return trouble ? grazing_blame(t, j, trouble, error) : RIC_OK;
+  return trouble ? grazing_callback_error(t, j, trouble, error) : RIC_OK;
 }
 
 ric_status ric_grazing_local_find(const ric_system *s, size_t obstacle, double t, const double *x,

@@ -11,7 +11,7 @@
 ric_status grazing_check_obstacle(const ric_system *system, size_t obstacle, ric_error *error);
 
 /** @returns RIC_ECALLBACK with what went wrong. */
-ric_status grazing_blame(double t, size_t obstacle, const char *trouble, ric_error *error);
+ric_status grazing_callback_error(double t, size_t obstacle, const char *trouble, ric_error *error);
 
 /** Gap rate and its rate of change along the free motion. @param rates  [n + m] work, set to those of the state */
 ric_status grazing_rates(const ric_system *system, size_t obstacle, double t, const double *x, double *rates,

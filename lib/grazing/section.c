@@ -158,7 +158,7 @@ static ric_status cross(second *w, double t, ric_error *error) {
 /* When the motion next has one of its impacts after the touch, since then. */
 static double time_to(const section *k, size_t which) {
   const double period = k->g->period;
-  const double time = fmod(arcs_time(k->f->shooting->arcs.impacts[which], k->g->z, period) - k->touch, period);
+  const double time = fmod(arcs_time(k->f->shooting->arcs.impacts[which], k->g->z, period) - k->grazing_time, period);
   return time < 0 ? time + period : time;
 }
 
@@ -175,7 +175,7 @@ static size_t expect(const section *k, double duration, size_t *first) {
 }
 
 /* Ends a run after the last impact that is expected, and at one that is not. */
-static int meet(const ric_event *e, void *user) {
+static int on_impact(const ric_event *e, void *user) {
   second *w = user;
   const arc_plan *arcs = &w->k->f->shooting->arcs;
   if (!ric_event_jumps(e))
@@ -188,9 +188,9 @@ static int meet(const ric_event *e, void *user) {
 
 /* From the touch through the impacts that the motion has before the section; `time` is that of the last one. It may be
  * later than the motion is on the section. */
-static ric_status meet_impacts(second *w, double end, double *time, ric_error *error) {
+static ric_status run_through_impacts(second *w, double end, double *time, ric_error *error) {
   const size_t n = w->k->f->problem.system->coordinates;
-  const ric_observer observer = {.event = meet, .user = w};
+  const ric_observer observer = {.event = on_impact, .user = w};
   ric_run run;
   RIC_TRY(ric_trajectory_start(w->trajectory, *time, w->x, w->x + n, error));
   RIC_TRY(ric_trajectory_run(w->trajectory, end + farthest * w->k->g->period, &observer, &run, error));
@@ -212,10 +212,10 @@ static ric_status meet_impacts(second *w, double end, double *time, ric_error *e
 static ric_status run_on(second *w, ric_error *error) {
   const section *k = w->k;
   const double end = k->time + k->g->period;
-  double time = k->touch;
-  w->expected = expect(k, end - k->touch, &w->next);
+  double time = k->grazing_time;
+  w->expected = expect(k, end - k->grazing_time, &w->next);
   if (w->expected > 0)
-    RIC_TRY(meet_impacts(w, end, &time, error));
+    RIC_TRY(run_through_impacts(w, end, &time, error));
   RIC_TRY(flow_to(w, time, end, error));
   return cross(w, end, error);
 }
@@ -227,7 +227,7 @@ static ric_status try(second *w, double depth, double *row, ric_error *error) {
   ric_bypass_seen seen;
   for (size_t i = 0; i < k->numbers; i++)
     w->x[i] = k->g->x[i] - depth * w->normal[i];
-  RIC_TRY(ric_bypass_map(w->bypass, k->touch, w->x, w->x, &seen, error));
+  RIC_TRY(ric_bypass_map(w->bypass, k->grazing_time, w->x, w->x, &seen, error));
   if (!(seen.psi < 0))
     return ric_fail(error, RIC_ENUMERIC, "the gap is %.3g at a state %.3g behind grazing, expected less than zero",
                     seen.psi, depth);
@@ -425,7 +425,7 @@ static ric_status set_L(section *k, double *L, ric_error *error) {
 
 /* Minima of the gap do not know when they are: eta sees differences at one time. */
 static ric_status set_eta(section *k, double *eta, ric_error *error) {
-  RIC_TRY(transfer(k, k->time, k->touch, error));
+  RIC_TRY(transfer(k, k->time, k->grazing_time, error));
   for (size_t j = 0; j < k->size; j++) {
     at_one_time(k, k->basis + j * k->state, k->from);
     multiply(k, k->from, k->goes);
@@ -446,7 +446,7 @@ static ric_status set_map(section *k, ric_grazing_map *map, ric_error *error) {
   const ric_grazing *g = k->g;
   RIC_TRY(set_L(k, map->L, error));
   RIC_TRY(set_eta(k, map->eta, error));
-  RIC_TRY(transfer(k, k->touch, k->time + g->period, error));
+  RIC_TRY(transfer(k, k->grazing_time, k->time + g->period, error));
   set_after(k, g->local.xi, map->xi);
   map->stretch = sqrt(2 * g->local.acceleration);
   return RIC_OK;
@@ -482,7 +482,7 @@ ric_status section_open(section *k, ric_family *f, const ric_grazing *g, const r
   k->time = plane ? plane->time : is_at_impact(k, 0) ? g->time : 0;
   k->state = g->numbers + (k->forced ? 1 : 0);
   k->size = k->state - 1;
-  k->touch = g->time >= k->time ? g->time : g->time + g->period; /* on the way from the section */
+  k->grazing_time = g->time >= k->time ? g->time : g->time + g->period; /* on the way from the section */
   RIC_TRY(check_map(k, map, error));
   family_forget(f);
   RIC_TRY(family_set(f, g->parameter, g->second, error));

@@ -10,7 +10,7 @@ typedef struct section {
   const ric_family *f;
   bool forced;
   size_t numbers, state, size; /* n + m; with time; of the coordinates */
-  double time, touch;          /* on it; of the touch after that */
+  double time, grazing_time;   /* on it; of the touch after that */
   double *normal;              /* [state] of length 1 */
   double *rates;               /* [state] F there, and 1 */
   double *basis;               /* [size][state] */

@@ -140,7 +140,7 @@ void contacts_forget_released(ric_trajectory *tr) {
 
 /* Contacts with gap and gap rate zero: which persist, which open, and how impacts accumulate towards rest. */
 
-static ric_status blame(const ric_trajectory *tr, size_t obstacle, const char *trouble, ric_error *error) {
+static ric_status callback_error(const ric_trajectory *tr, size_t obstacle, const char *trouble, ric_error *error) {
   return ric_fail(error, RIC_ECALLBACK, "at t = %g, obstacle %zu: %s", tr->flow->time, obstacle, trouble);
 }
 
@@ -163,7 +163,7 @@ static ric_status read_acceleration(ric_trajectory *tr, double t, const double *
   const ric_system *s = tr->system;
   const char *trouble =
       s->model->gap_acceleration(s, obstacle, t, q, u, tr->rates, tr->rates + s->coordinates, acceleration);
-  return trouble ? blame(tr, obstacle, trouble, error) : RIC_OK;
+  return trouble ? callback_error(tr, obstacle, trouble, error) : RIC_OK;
 }
 
 ric_status gap_acceleration(ric_trajectory *tr, size_t obstacle, double *acceleration, ric_error *error) {
@@ -228,7 +228,7 @@ static double chatter_limit(const ric_trajectory *tr) {
 
 /* Whether a bounce loses no more of its height than the flow's errors can give back: followed, they would keep the
  * series up. */
-static bool is_kept_up(const ric_trajectory *tr, const impact *c, double acceleration) {
+static bool is_sustained_by_errors(const ric_trajectory *tr, const impact *c, double acceleration) {
   double e = c->restitution, size = tr->locator.noise / tr->noise;
   double error = 10 * tr->flow->options.tolerance * size;
   return acceleration < 0 && (1 - e * e) * c->rate_end * c->rate_end <= -2 * acceleration * error;
@@ -236,9 +236,9 @@ static bool is_kept_up(const ric_trajectory *tr, const impact *c, double acceler
 
 /* Flights of a gap with acceleration -A + J t that begin at the rate w and shrink by e last, in all and to the order
  * after the first, 2 w / (A (1 - e)) (1 + (2/3) (J / A^2) w / (1 - e)). */
-static double judge_series(const ric_trajectory *tr, const impact *c, double acceleration, double jerk) {
+static double estimate_series(const ric_trajectory *tr, const impact *c, double acceleration, double jerk) {
   double e = c->restitution, duration = first_duration(c, acceleration);
-  double limit = is_kept_up(tr, c, acceleration) ? 1 : chatter_limit(tr);
+  double limit = is_sustained_by_errors(tr, c, acceleration) ? 1 : chatter_limit(tr);
   if (!(duration * fmax(1, fabs(jerk / acceleration)) <= limit))
     return NAN;
   return duration * (1 + 2 * jerk * c->rate_end / (3 * acceleration * acceleration * (1 - e)));
@@ -259,7 +259,7 @@ static ric_status find_candidates(ric_trajectory *tr, size_t hits, bool *any, ri
       RIC_TRY(find_rates(tr, f->time, f->q, f->u, error));
     asked = true;
     RIC_TRY(read_acceleration(tr, f->time, f->q, f->u, c->obstacle, &acceleration, error));
-    if (first_duration(c, acceleration) <= chatter_limit(tr) || is_kept_up(tr, c, acceleration))
+    if (first_duration(c, acceleration) <= chatter_limit(tr) || is_sustained_by_errors(tr, c, acceleration))
       c->accumulation = 0;
     *any |= !isnan(c->accumulation);
   }
@@ -290,7 +290,7 @@ ric_status chatter_ahead(ric_trajectory *tr, size_t hits, ric_error *error) {
     if (isnan(c->accumulation))
       continue;
     RIC_TRY(read_acceleration(tr, f->time, f->q, f->u, c->obstacle, &acceleration, error));
-    c->accumulation = judge_series(tr, c, acceleration, c->accumulation);
+    c->accumulation = estimate_series(tr, c, acceleration, c->accumulation);
   }
   return RIC_OK;
 }
@@ -388,7 +388,7 @@ static ric_status find_forces(ric_trajectory *tr, ric_error *error) {
 
 /* Contacts that press have gap and gap rate zero, and so have those that touch and neither press nor leave: what errors
  * have left of theirs would set the body rocking between its redundant contacts. */
-static ric_status come_to_rest(ric_trajectory *tr, ric_error *error) {
+static ric_status begin_sticking(ric_trajectory *tr, ric_error *error) {
   tr->closed.count = 0;
   for (size_t i = 0; i < tr->settling.count; i++)
     if (!(tr->accelerations[i] > 0))
@@ -402,7 +402,7 @@ ric_status contacts_settle(ric_trajectory *tr, ric_error *error) {
   if (list->count == 0)
     return RIC_OK;
   RIC_TRY(find_forces(tr, error));
-  RIC_TRY(come_to_rest(tr, error));
+  RIC_TRY(begin_sticking(tr, error));
   for (size_t i = 0; i < list->count; i++) {
     bool neutral = list->count == 1 && !(tr->accelerations[i] > 0);
     RIC_TRY(conclude(tr, list->items[i], tr->forces[i] > 0 || neutral, error));

@@ -232,7 +232,7 @@ static double rate_now(const ric_trajectory *tr, size_t obstacle) {
 }
 
 /* Which way a contact at zero goes: by its rate, or by its acceleration where the rate is zero. */
-static ric_status goes_in(ric_trajectory *tr, size_t obstacle, bool *in, bool *fast, ric_error *error) {
+static ric_status is_closing(ric_trajectory *tr, size_t obstacle, bool *in, bool *fast, ric_error *error) {
   double rate = rate_now(tr, obstacle), acceleration;
   *fast = fabs(rate) > tr->rate_noise;
   *in = rate < 0;
@@ -246,7 +246,7 @@ static ric_status goes_in(ric_trajectory *tr, size_t obstacle, bool *in, bool *f
 /* A compliant contact at zero presses or is open from now on. */
 static ric_status set_compliant(ric_trajectory *tr, size_t obstacle, ric_error *error) {
   bool in, fast;
-  RIC_TRY(goes_in(tr, obstacle, &in, &fast, error));
+  RIC_TRY(is_closing(tr, obstacle, &in, &fast, error));
   departure how = fast ? DEPARTS_FAST : DEPARTS_SLOWLY;
   return in ? contact_presses(tr, obstacle, how, error) : contact_opens(tr, obstacle, how, error);
 }
@@ -277,7 +277,7 @@ static ric_status depth_of(ric_trajectory *tr, size_t obstacle, double rate, dou
 }
 
 /* Takes out of the impulses what the series of impacts that is summed up would have given back. */
-static ric_status sum_up(ric_trajectory *tr, size_t hits, ric_error *error) {
+static ric_status sum_series(ric_trajectory *tr, size_t hits, ric_error *error) {
   bool all = hits == 1 && !isnan(tr->impacts[0].accumulation); /* with the persistent contacts that share in it */
   for (size_t i = 0; i < tr->impact_count; i++) {
     impact *c = &tr->impacts[i];
@@ -290,7 +290,8 @@ static ric_status sum_up(ric_trajectory *tr, size_t hits, ric_error *error) {
 
 /* Whether a contact has no more of a rate than from a fall through the noise of its gap: coming in, it has been pressed
  * on already. */
-static ric_status is_pressed_on(ric_trajectory *tr, size_t obstacle, double rate, bool *pressed, ric_error *error) {
+static ric_status falls_through_noise(ric_trajectory *tr, size_t obstacle, double rate, bool *pressed,
+                                      ric_error *error) {
   double acceleration, noise = tr->locator.noise;
   *pressed = false;
   if (rate * rate > 1e4 * noise) /* for every acceleration below 5e3 */
@@ -308,7 +309,7 @@ static ric_status find_leaving(ric_trajectory *tr, ric_error *error) {
     bool low = false;
     c->leaves = c->rate_end > tr->rate_noise;
     if (c->leaves && c->restitution < 1 && (c->rate < -tr->rate_noise || contacts_couple(tr)))
-      RIC_TRY(is_pressed_on(tr, c->obstacle, c->rate_end, &low, error));
+      RIC_TRY(falls_through_noise(tr, c->obstacle, c->rate_end, &low, error));
     c->leaves &= !low;
   }
   return RIC_OK;
@@ -350,7 +351,7 @@ static bool is_off(const ric_trajectory *tr, size_t obstacle) {
 
 /* Puts those that come in onto their obstacles; where contacts couple all of them together: one alone would lift the
  * others, and what they fall from there would keep them moving. */
-static ric_status put_on(ric_trajectory *tr, ric_error *error) {
+static ric_status project_onto_obstacles(ric_trajectory *tr, ric_error *error) {
   bool couple = contacts_couple(tr), any = false;
   tr->closed.count = 0;
   for (size_t i = 0; i < tr->impact_count; i++)
@@ -380,8 +381,8 @@ static ric_status collide(ric_trajectory *tr, size_t hits, ric_error *error) {
     RIC_TRY(depth_of(tr, tr->impacts[0].obstacle, rate_now(tr, tr->impacts[0].obstacle), &depth, error));
   RIC_TRY(impact_apply(&tr->law, f->time, f->q, f->u, tr->impacts, tr->impact_count, error));
   RIC_TRY(chatter_ahead(tr, hits, error));
-  RIC_TRY(sum_up(tr, hits, error));
-  RIC_TRY(put_on(tr, error));
+  RIC_TRY(sum_series(tr, hits, error));
+  RIC_TRY(project_onto_obstacles(tr, error));
   RIC_TRY(find_leaving(tr, error));
   for (size_t i = 0; i < tr->impact_count; i++)
     RIC_TRY(conclude_impact(tr, &tr->impacts[i], hits, i < hits ? depth : -INFINITY, error));
@@ -389,11 +390,11 @@ static ric_status collide(ric_trajectory *tr, size_t hits, ric_error *error) {
 }
 
 /* A root of an open rigid contact: an impact, a touch with rate zero, or noise on its way out. */
-static ric_status sort_root(ric_trajectory *tr, size_t obstacle, ric_error *error) {
+static ric_status classify_root(ric_trajectory *tr, size_t obstacle, ric_error *error) {
   double rate = rate_now(tr, obstacle);
   bool pressed;
   if (rate < -tr->rate_noise) {
-    RIC_TRY(is_pressed_on(tr, obstacle, rate, &pressed, error));
+    RIC_TRY(falls_through_noise(tr, obstacle, rate, &pressed, error));
     if (!pressed)
       return add_impact(tr, obstacle, restitution_of(tr, obstacle), error);
     impact_tangents_lose(tr, obstacle, tr->flow->time, RIC_SALTATION_GRAZING);
@@ -424,7 +425,7 @@ static ric_status add_touching(ric_trajectory *tr, ric_error *error) {
     bool open = tr->locator.departure[obstacle] != DEPARTED && !system_complies(tr->system, obstacle);
     bool pressed = fabs(rate) <= tr->rate_noise;
     if (open && rate < -tr->rate_noise)
-      RIC_TRY(is_pressed_on(tr, obstacle, rate, &pressed, error));
+      RIC_TRY(falls_through_noise(tr, obstacle, rate, &pressed, error));
     if (open && pressed && !takes_part(tr, obstacle))
       RIC_TRY(add_impact(tr, obstacle, 0, error));
   }
@@ -476,7 +477,7 @@ ric_status contacts_onset(ric_trajectory *tr, ric_error *error) {
     else if (flow_contact(tr->flow, obstacle) == CONTACT_HELD)
       RIC_TRY(contact_opens(tr, obstacle, DEPARTS_SLOWLY, error));
     else
-      RIC_TRY(sort_root(tr, obstacle, error));
+      RIC_TRY(classify_root(tr, obstacle, error));
   }
   return resolve(tr, error);
 }

@@ -57,7 +57,7 @@ ric_status impact_solver_reserve(impact_solver *s, size_t count, ric_error *erro
   return RIC_OK;
 }
 
-static ric_status blame(ric_error *error, double t, size_t obstacle, const char *trouble) {
+static ric_status callback_error(ric_error *error, double t, size_t obstacle, const char *trouble) {
   return ric_fail(error, RIC_ECALLBACK, "at t = %g, obstacle %zu: %s", t, obstacle, trouble);
 }
 
@@ -67,7 +67,7 @@ static ric_status find_direction(impact_solver *s, size_t slot, size_t obstacle,
   contact_direction *d = &s->directions[slot];
   *d = (contact_direction){.g = s->g + slot * m, .w = s->w + slot * m};
   const char *trouble = s->system->model->direction(s->system, obstacle, t, q, d);
-  return trouble ? blame(error, t, obstacle, trouble) : RIC_OK;
+  return trouble ? callback_error(error, t, obstacle, trouble) : RIC_OK;
 }
 
 /* g_a . w_b over the speeds that both reach. */
@@ -88,7 +88,7 @@ static void push(const contact_direction *d, double impulse, double *u) {
 static ric_status read_rate(const impact_solver *s, double t, const double *q, const double *u, size_t obstacle,
                             double *rate, ric_error *error) {
   const char *trouble = s->system->model->gap_rate(s->system, obstacle, t, q, u, rate);
-  return trouble ? blame(error, t, obstacle, trouble) : RIC_OK;
+  return trouble ? callback_error(error, t, obstacle, trouble) : RIC_OK;
 }
 
 /* Minus the work of an impulse on the speeds before and after, on their mean. The motion of the gap itself, `offset`,
@@ -169,7 +169,7 @@ static ric_status apply_map(impact_solver *s, double t, double *x, impact *c, ri
     return RIC_OK;
   const char *trouble = system->model->impact(system, c->obstacle, t, x, s->after);
   if (trouble)
-    return blame(error, t, c->obstacle, trouble);
+    return callback_error(error, t, c->obstacle, trouble);
   memcpy(s->before, x, bytes);
   memcpy(x, s->after, bytes);
   c->loss = energy_before - ric_system_energy(system, t, x, NULL);

@@ -217,7 +217,7 @@ static int first_root(const scan *s, size_t obstacle, const gap_part *part, depa
 
 /* A cheap look at a gap, which tells most of those that stay away, or leave, and most that fall straight to zero.
  * @returns whether that is all there is to say */
-static bool look_cheaply(const scan *s, const gap_part *part, departure from, bool *found, double *y) {
+static bool test_bounds(const scan *s, const gap_part *part, departure from, bool *found, double *y) {
   double tol = s->l->grazing_tol;
   *found = false;
   if (from == DEPARTS_FAST)
@@ -240,9 +240,9 @@ static bool is_near_miss(const gap_part *part, bool found, double y, double at, 
 }
 
 /* Root and near misses of an open rigid contact on one part; `found` ends the search along the piece. */
-static ric_status look_at_gap(scan *s, size_t obstacle, const gap_part *part, departure from, bool *found) {
+static ric_status find_gap_root(scan *s, size_t obstacle, const gap_part *part, departure from, bool *found) {
   double y = 0, at, least, width = part->to - part->from;
-  if (look_cheaply(s, part, from, found, &y))
+  if (test_bounds(s, part, from, found, &y))
     return *found ? found_root(s, obstacle, part->from + y * width) : RIC_OK;
   *found = first_root(s, obstacle, part, from, &y);
   if (from != DEPARTS_SLOWLY && ric_poly_first_minimum(part->c, part->degree, s->l->grazing_tol, &at, &least) &&
@@ -253,7 +253,7 @@ static ric_status look_at_gap(scan *s, size_t obstacle, const gap_part *part, de
 }
 
 /* The other functions have no near misses. */
-static ric_status look_at_root(scan *s, size_t obstacle, const gap_part *part, departure from, bool *found) {
+static ric_status find_other_root(scan *s, size_t obstacle, const gap_part *part, departure from, bool *found) {
   double y;
   *found = first_root(s, obstacle, part, from, &y);
   return *found ? found_root(s, obstacle, part->from + y * (part->to - part->from)) : RIC_OK;
@@ -263,8 +263,8 @@ static ric_status find_contact_root(scan *s, size_t obstacle, contact_function w
                                     bool *found) {
   departure from = part->from == 0 ? (departure)s->l->departure[obstacle] : DEPARTED;
   if (what == WATCH_GAP && !system_complies(s->flow->system, obstacle))
-    return look_at_gap(s, obstacle, part, from, found);
-  return look_at_root(s, obstacle, part, what == WATCH_FORCE ? DEPARTED : from, found);
+    return find_gap_root(s, obstacle, part, from, found);
+  return find_other_root(s, obstacle, part, what == WATCH_FORCE ? DEPARTED : from, found);
 }
 
 static ric_status scan_part(scan *s, const ric_segment *piece, size_t obstacle, contact_function what, double from,

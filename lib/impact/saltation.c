@@ -33,7 +33,7 @@ void tangent_jump_clear(tangent_jump *j) {
   *j = (tangent_jump){0};
 }
 
-static ric_status blame(ric_error *error, double t, size_t obstacle, const char *trouble) {
+static ric_status callback_error(ric_error *error, double t, size_t obstacle, const char *trouble) {
   return ric_fail(error, RIC_ECALLBACK, "at t = %g, obstacle %zu: %s", t, obstacle, trouble);
 }
 
@@ -124,7 +124,7 @@ static ric_status read_rates(const passage *p, const unsigned char *contact, con
                              double *rates) {
   const ric_system *s = p->jump->system;
   const char *trouble = s->model->rate(s, contact, p->t, q, u, rates, rates + s->coordinates);
-  return trouble ? blame(p->error, p->t, p->group->obstacles[0], trouble) : RIC_OK;
+  return trouble ? callback_error(p->error, p->t, p->group->obstacles[0], trouble) : RIC_OK;
 }
 
 /* Sets `shift` [columns], the times by which neighbouring motions are late. */
@@ -141,7 +141,7 @@ static ric_status find_shifts(const passage *p, const double *q, const double *u
   if (!trouble)
     trouble = s->model->gap_derivative(s, obstacle, p->t, q, d, j->shift);
   if (trouble)
-    return blame(p->error, p->t, obstacle, trouble);
+    return callback_error(p->error, p->t, obstacle, trouble);
   if (!(rate < 0))
     return ric_fail(p->error, RIC_EINVAL, "at t = %g: the gap rate of obstacle %zu is %g, expected below 0", p->t,
                     obstacle, rate);
@@ -162,7 +162,7 @@ static ric_status map_column(passage *p, const tangents *d, size_t k) {
   size_t n = j->system->coordinates, size = n + j->system->speeds;
   const char *trouble = differentiate(p);
   if (trouble)
-    return blame(p->error, p->t, p->group->obstacles[0], trouble);
+    return callback_error(p->error, p->t, p->group->obstacles[0], trouble);
   for (size_t i = 0; i < size; i++)
     row(d, i, n)[k] = j->line[i];
   return RIC_OK;
@@ -197,7 +197,7 @@ ric_status tangent_jump_map(tangent_jump *j, double t, const jump_group *group, 
     RIC_TRY(map_column(&p, d, k));
   }
   const char *trouble = map(&p, t, q, u);
-  return trouble ? blame(error, t, group->obstacles[0], trouble) : RIC_OK;
+  return trouble ? callback_error(error, t, group->obstacles[0], trouble) : RIC_OK;
 }
 
 ric_status tangent_jump_apply(tangent_jump *j, double t, const jump_group *group, double grazing_tol,
@@ -214,7 +214,7 @@ ric_status tangent_jump_apply(tangent_jump *j, double t, const jump_group *group
     RIC_TRY(pass_column(&p, d, k));
   const char *trouble = map(&p, t, q, u); /* last: maps remember their restitution */
   if (trouble)
-    return blame(error, t, group->obstacles[0], trouble);
+    return callback_error(error, t, group->obstacles[0], trouble);
   memmove(contact, after, j->system->obstacle_count); /* they may be the same */
   RIC_TRY(read_rates(&p, contact, q, u, j->rates_after));
   for (size_t i = 0; i < n + m; i++)
@@ -285,7 +285,7 @@ static ric_status hit(sequence *s, size_t obstacle, const tangents *d, ric_error
 }
 
 /* One round through the obstacles. @param any  whether one of them was hit */
-static ric_status go_round(sequence *s, bool backwards, bool first, const tangents *d, bool *any, ric_error *error) {
+static ric_status apply_round(sequence *s, bool backwards, bool first, const tangents *d, bool *any, ric_error *error) {
   size_t n = s->system->coordinates;
   *any = false;
   for (size_t i = 0; i < s->count && s->kind == RIC_SALTATION_DIFFERENTIABLE; i++) {
@@ -315,7 +315,7 @@ static ric_status run_sequence(sequence *s, bool backwards, double *S, ric_error
   for (int round = 0; any && s->kind == RIC_SALTATION_DIFFERENTIABLE; round++) {
     if (round == MOST_ROUNDS)
       return ric_fail(error, RIC_ELIMIT, "contacts hit each other more than %d times at t = %g", MOST_ROUNDS, s->t);
-    RIC_TRY(go_round(s, backwards, round == 0, &d, &any, error));
+    RIC_TRY(apply_round(s, backwards, round == 0, &d, &any, error));
   }
   return RIC_OK;
 }

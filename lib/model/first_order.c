@@ -1,5 +1,5 @@
-/* First-order systems of a user: rates, impact maps and their limit at grazing, and the forces of contacts that
- * persist. */
+/* First-order systems of a user: rates, impact maps and their limit at grazing, and the forces of contacts that stick.
+ */
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -15,14 +15,14 @@ typedef struct first_order {
   ric_system base;
   ric_first_order model;
   user_gap gap;
-  double *ratio;                 /* [obstacles] restitution seen last; written by impact */
-  double *numbers;               /* one block that all the following lie in, and the place of `gap` */
+  double *ratio;                 /* [obstacles] restitution of the last impact; written by impact */
+  double *numbers;               /* one block of memory for all the following and for `gap` */
   double *gradient, *rate;       /* [n] of the last gap rate */
   double *path, *before, *after; /* [n] points of a path; states before and after a trial impact */
   double *free_rate, *table;     /* [n] free rate of the reaction; [FIRST_ORDER_TRIALS][n] extrapolation */
-  double *foot, *approach;       /* [n] a state of zero gap rate, and the line on which impact maps are tried there */
-  double *limit;                 /* [n] of an extrapolation */
-  size_t *held;                  /* [held_most] indices of the contacts that are held */
+  double *foot, *approach; /* [n] a state of zero gap rate, and the line along which impact maps are evaluated there */
+  double *limit;           /* [n] of an extrapolation */
+  size_t *held;            /* [held_most] indices of the contacts that are held */
   size_t held_most;
   double *direction, *matrix, *lambda; /* [held_most][n], [held_most][held_most], [held_most] */
 } first_order;
@@ -46,9 +46,9 @@ static const char *first_order_map(const first_order *s, size_t obstacle, double
 
 /* The impact map of a first-order system where the gap rate vanishes.
  *
- * States that are about to leave the surface of zero gap rate are x - s p, where the gap rate changes at unit rate
- * along p and s > 0 is small. The map moves them by s xi + O(s^2), whatever p is: xi = lim (G(x - s p) - (x - s p)) /
- * s, by extrapolation from one side, since G may do nothing on the other. A contact that persists pushes along xi. */
+ * States near the surface of zero gap rate are x - s p, where the gap rate changes at unit rate along p and s > 0 is
+ * small. The map moves them by s xi + O(s^2) for every p: xi = lim (G(x - s p) - (x - s p)) / s, by one-sided
+ * extrapolation, since G may be the identity on the other side. The force of a contact that sticks acts along xi. */
 
 /* A straight path of states through x; time runs along with speed `time_rate`. */
 typedef struct state_path {
@@ -97,7 +97,7 @@ static const char *normalise(const first_order *s, size_t obstacle, double t, co
                                         : "the impact map of a contact that persists leaves the gap rate as it is";
 }
 
-/* Gradient of the gap rate over its square: it only has to lead to states with a gap rate below zero. */
+/* Gradient of the gap rate divided by its square: any direction to states with a negative gap rate suffices. */
 static const char *steepest(const first_order *s, size_t obstacle, double t, const double *x, double *d) {
   size_t n = s->model.states;
   double slope;
@@ -120,7 +120,7 @@ static const char *trial(const first_order *s, size_t obstacle, double t, const 
   return NULL;
 }
 
-/* Limit of the trial for vanishing steps by Neville's scheme, from `step` on. `error`: what the last order changed */
+/* Limit of the trial for vanishing steps by Neville's scheme, from `step` on. `error`: change by the last order */
 static const char *extrapolate(const first_order *s, size_t obstacle, double t, const double *x, const double *d,
                                double step, double *limit, double *error) {
   size_t n = s->model.states;
@@ -155,14 +155,15 @@ static const char *push_along(const first_order *s, size_t obstacle, double t, c
 
 /** The direction d [n] in which the impact map moves states of small gap rate, scaled so that the gap rate changes at
  *  unit rate along it. */
-/* The trial along the gradient leads roughly there; along D itself the gap does not change. */
+/* The trial along the gradient gives D roughly; along D itself the gap does not change. */
 static const char *first_order_push(const first_order *s, size_t obstacle, double t, const double *x, double *d) {
   TRY_TEXT(steepest(s, obstacle, t, x, d));
   TRY_TEXT(push_along(s, obstacle, t, x, d));
   return push_along(s, obstacle, t, x, d);
 }
 
-/* Contacts of first-order systems: how gaps change along a motion, and the forces that hold them. */
+/* Contacts of first-order systems: gap rates and accelerations along a motion, and the forces of contacts that stick.
+ */
 
 /* Row k of the equations for the forces: how each of them changes gap rate k, and -h'' of the free motion. */
 static const char *held_row(const first_order *s, size_t k, size_t count, double t, const double *x,
@@ -244,7 +245,7 @@ static const char *gap(const ric_system *system, size_t obstacle, double t, cons
   return user_gap_value(&first_order_of(system)->gap, obstacle, t, x, h);
 }
 
-/* The restitution that an impact amounts to. Gap rates that cannot be had, or do not fall, say nothing about it. */
+/* The effective restitution of an impact. Gap rates that are unavailable, or not negative, do not determine it. */
 static void remember_ratio(const first_order *s, size_t obstacle, double t, const double *x, const double *x_after) {
   double before, after;
   if (first_order_gap_rate(&s->base, obstacle, t, x, NULL, &before) ||
@@ -298,7 +299,7 @@ static const char *first_order_gap_acceleration(const ric_system *system, size_t
 }
 
 enum {
-  SCALES = 4,     /* of trial steps: where the map bends within the first one the next is tried */
+  SCALES = 4,     /* of trial steps: if the map is curved within the first one, the next is tried */
   SCALE_BITS = 5, /* the next one is so many times halved */
   FOOT_STEPS = 3  /* of Newton's method to the surface of zero gap rate, along a line */
 };
@@ -315,9 +316,9 @@ static const char *find_foot(const first_order *s, size_t obstacle, double t, co
   return NULL;
 }
 
-static const double fine_limit = 1e-10; /* the same, absolute: no other scale can do much better */
+static const double fine_limit = 1e-10; /* the same, absolute: other scales cannot be much more accurate */
 
-/* The limit along d from the scale that gives it best. */
+/* The limit along d from the most accurate scale. */
 static const char *best_limit(const first_order *s, size_t obstacle, double t, const double *d, double *xi,
                               double *error) {
   double step = first_step(s, d), now;
@@ -332,7 +333,7 @@ static const char *best_limit(const first_order *s, size_t obstacle, double t, c
   return NULL;
 }
 
-/* By how much the map moves a state of gap rate -step, and the power of the rate with which that vanishes. */
+/* Change of a state of gap rate -step by the map, and the power of the gap rate with which it vanishes. */
 static const char *follow_down(const first_order *s, size_t obstacle, double t, const double *d, impact_slope *found) {
   double coarse, step = first_step(s, d), far = ldexp(step, -SCALE_BITS * SCALES);
   TRY_TEXT(trial(s, obstacle, t, s->foot, d, step, s->limit));
@@ -344,8 +345,8 @@ static const char *follow_down(const first_order *s, size_t obstacle, double t, 
   return NULL;
 }
 
-/* Of the extrapolations against 1 + the size of xi: what smooth maps leave is 1e-8 or less, what others leave is of
- * order one at every scale. */
+/* Error of the extrapolation relative to 1 + the size of xi: 1e-8 or less for smooth maps, of order one at every scale
+ * for others. */
 static const double limit_tol = 1e-6;
 
 /** See system_model. */

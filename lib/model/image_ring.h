@@ -26,9 +26,9 @@ double image_ring_entry(const ric_chain *chain, const double *kernel, size_t k, 
 
 /* Modal transform of a chain by FFTW.
  *
- * forward takes a function on the chain to its (unnormalised) modal coefficients, inverse takes them back with the
- * factor N, the number of sites of the image ring (image_ring.h). Coefficient s belongs to the wave number 2 pi j / N
- * with j = lattice_transform_wave(s). Plans are made without measuring, so that equal problems run equal code. */
+ * forward maps a function on the chain to its (unnormalised) modal coefficients, inverse maps them back with the factor
+ * N, the number of sites of the image ring (image_ring.h). Coefficient s belongs to the wave number 2 pi j / N with j =
+ * lattice_transform_wave(s). Plans are made without timing, so that equal problems run equal code. */
 
 typedef struct lattice_transform lattice_transform;
 

@@ -1,4 +1,4 @@
-/* Lattices: forces and energies, their derivatives, and the system that is made of one. */
+/* Lattices: forces and energies, their derivatives, and the system of a lattice. */
 #include "lattice_system.h"
 
 #include <math.h>
@@ -217,7 +217,7 @@ void lattice_tangent(const ric_lattice *lattice, const double *q, const tangents
 typedef struct lattice_system {
   ric_system base;
   ric_lattice lattice;
-  double *masses, *force_cos, *force_sin; /* owned, NULL where no lattice of this system has had one */
+  double *masses, *force_cos, *force_sin; /* owned, NULL if no lattice of this system has had one */
   ric_spring *on_sites, *links;
 } lattice_system;
 
@@ -230,7 +230,8 @@ static double push(const ric_obstacle *o, double q) {
   return o->side * hertz_force(o->stiffness, ric_obstacle_gap(o, q));
 }
 
-/* Whether a compliant obstacle acts: by its state, or by the sign of its gap (in Hertz's law) when none are given. */
+/* Whether a compliant obstacle acts: by its contact state, or by the sign of its gap (in Hertz's law) if no states are
+ * given. */
 static bool presses(const ric_obstacle *o, const unsigned char *contact, size_t obstacle) {
   return contact ? contact[obstacle] == CONTACT_PRESSED : isfinite(o->stiffness);
 }
@@ -258,7 +259,7 @@ static const char *rate(const ric_system *s, const unsigned char *contact, doubl
 static const char *tangent(const ric_system *s, const unsigned char *contact, double t, const double *q,
                            const double *u, const tangents *d, const tangents *d_rate) {
   (void)t;
-  (void)u; /* no force depends on speeds and on anything else at once */
+  (void)u; /* no force depends on speeds together with another variable */
   const ric_lattice *lattice = lattice_system_lattice(s);
   size_t columns = d->columns, row = columns * sizeof *d->q;
   memmove(d_rate->q, d->u, s->coordinates * row);
@@ -356,7 +357,7 @@ static const system_model model = {.rate = rate,
                                    .repeats = repeats,
                                    .destroy = destroy};
 
-/* Room for an array that may be NULL; there stays what there was. False when there is no memory. */
+/* Makes room for an array that may be NULL; existing arrays are kept. False without memory. */
 static bool reserve_doubles(const double *given, size_t count, double **own) {
   if (given && !*own)
     *own = malloc(count * sizeof **own);
@@ -377,7 +378,7 @@ static const ric_spring *copy_springs(const ric_spring *given, size_t count, ric
   return given ? memcpy(own, given, count * sizeof *own) : NULL;
 }
 
-/* Takes a lattice that has been checked; nothing has changed when there is no memory. */
+/* Copies a lattice that has been checked; without memory nothing has changed. */
 static ric_status take_lattice(lattice_system *s, const ric_lattice *l, ric_error *error) {
   size_t n = l->particles;
   bool room = reserve_doubles(l->masses, n, &s->masses) && reserve_doubles(l->force_cos, n, &s->force_cos) &&

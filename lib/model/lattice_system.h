@@ -1,4 +1,4 @@
-/* Lattices: forces and energies, their derivatives, and the system that is made of one. Internal to the library. */
+/* Lattices: forces and energies, their derivatives, and the system of a lattice. Internal to the library. */
 #ifndef RICOCHET_LATTICE_SYSTEM_H
 #define RICOCHET_LATTICE_SYSTEM_H
 

@@ -195,7 +195,7 @@ static void factor_clear(mass_factor *f) {
   free(f->order);
 }
 
-/* A pivot that is rounding in comparison with the diagonal entry it comes from is no evidence of a positive one. */
+/* A pivot that is rounding relative to its diagonal entry does not prove positive definiteness. */
 static ric_status check_pivots(const mass_factor *f, const double *mass, ric_error *error) {
   for (size_t k = 0; k < f->n; k++) {
     size_t i = f->order[k];
@@ -255,7 +255,7 @@ static ric_status divide_matrix(mck_rows *rows, const mass_factor *f, const ric_
   return mck_rows_copy(rows, &(ric_matrix){.values = f->square}, n, NULL, error);
 }
 
-/* Symmetric to the last bit, so that an impulse acts on others as theirs act on it. */
+/* Symmetric to the last bit, so that the mutual actions of impulses are equal. */
 static void invert(const mass_factor *f, double *inverse) {
   size_t n = f->n;
   memset(inverse, 0, n * n * sizeof *inverse);

@@ -10,7 +10,7 @@
 
 #include "ricochet/mck.h"
 
-/* Entries of a mass matrix that someone computed differ by rounding from those of its transpose; more is a mistake. */
+/* Entries of a computed mass matrix differ by rounding from those of its transpose; larger differences are errors. */
 static const double symmetry_tol = 1e-12;
 
 static ric_status check_dense(const char *name, const double *a, size_t n, ric_error *error) {
@@ -95,7 +95,7 @@ ric_status ric_mck_check(const ric_mck *mck, ric_error *error) {
   return check_vector("force_sin", mck->force_sin, n, error);
 }
 
-/* Only rigid obstacles hold; without states any of them may. */
+/* Only rigid obstacles hold coordinates; without contact states any of them may. */
 static int may_hold(const ric_system *s, const unsigned char *contact, size_t obstacle) {
   return isinf(s->obstacles[obstacle].stiffness) && (!contact || contact[obstacle] == CONTACT_HELD);
 }
@@ -337,7 +337,7 @@ static const char *mck_direction(const ric_system *base, size_t obstacle, double
   return NULL;
 }
 
-/* A diagonal mass: the force on one coordinate is minus the free one, and contacts there share it. */
+/* Diagonal mass matrix: the contact force on a coordinate is minus the free force, and contacts there share it. */
 static double own_reaction(const mck_system *s, const unsigned char *contact, size_t obstacle, double t,
                            const double *q, const double *u) {
   size_t i = s->base.obstacles[obstacle].coordinate;
@@ -429,7 +429,7 @@ static void mck_destroy(ric_system *base) {
 }
 
 static double mck_mass(const ric_system *s, size_t coordinate) {
-  return mck_of(s)->mass[coordinate]; /* asked of diagonal ones */
+  return mck_of(s)->mass[coordinate]; /* called for diagonal mass matrices only */
 }
 
 static bool mck_forced(const ric_system *s) {
@@ -455,7 +455,7 @@ static const system_model mck_model = {.rate = mck_rate,
                                        .repeats = mck_repeats,
                                        .destroy = mck_destroy};
 
-/* Makes the numbers of a model that has been checked; release them whatever the status. */
+/* Creates the numbers of a model that has been checked; release them for every status. */
 static ric_status make(mck_system *s, const ric_mck *mck, ric_error *error) {
   s->frequency = mck->frequency;
   RIC_TRY(mck_rows_copy(&s->springs, &mck->stiffness, mck->coordinates, NULL, error));

@@ -1,4 +1,4 @@
-/* M-C-K systems: models that are checked, contacts that hold coordinates, derivatives, and the system. Internal to the
+/* M-C-K systems: validated models, contacts that hold coordinates, derivatives, and the system. Internal to the
  * library. */
 #ifndef RICOCHET_MCK_SYSTEM_H
 #define RICOCHET_MCK_SYSTEM_H
@@ -6,7 +6,7 @@
 #include "mck_rows.h"
 #include "system_model.h"
 
-/* What a system of an M-C-K model holds: internal, for its Taylor flow. */
+/* Data of an M-C-K system: internal, for its Taylor flow. */
 
 typedef struct mck_system {
   ric_system base;
@@ -28,17 +28,17 @@ double mck_mobility(const mck_system *s, size_t i);
 /** acceleration [n] += M^-1 e_i force. */
 void mck_push(const mck_system *s, size_t i, double force, double *acceleration);
 
-/* The mass matrix of an M-C-K system, and everything divided by it. */
+/* The mass matrix of an M-C-K system, and the matrices divided by it. */
 
 /** Sets base.uncoupled, M and its inverse, M^-1 C, M^-1 K, M^-1 F and M^-1 G of a system, from a model that has been
  *  checked. A diagonal mass keeps sparse matrices sparse, any other makes all of them dense.
  *  @returns RIC_EINVAL when the mass is not positive definite, RIC_ENOMEM; destroy the system in any case. */
 ric_status mck_divide_by_mass(mck_system *s, const ric_mck *mck, ric_error *error);
 
-/* Coordinates that persistent contacts hold: forces along them bring their accelerations to zero.
+/* Coordinates held by sticking (persistent) contacts: forces along them make their accelerations zero.
  *
  * With G the columns of the held coordinates, u' = M^-1 (f + G mu), (G^T M^-1 G) mu = -G^T M^-1 f. Several contacts
- * that hold the same coordinate share mu equally: the smallest of the forces that do the same. */
+ * that hold the same coordinate share mu equally: the solution of least norm. */
 
 typedef struct mck_hold {
   size_t count;       /* held coordinates */
@@ -49,18 +49,18 @@ typedef struct mck_hold {
   size_t *order;      /* [count] its permutation */
 } mck_hold;
 
-/** Room for the contacts that are held in given states, or for all rigid obstacles when `contact` is NULL; none is held
- *  yet. @returns 0 without memory; clear `hold` in any case. */
+/** Makes room for the contacts that are held in given states, or for all rigid obstacles if `contact` is NULL; none is
+ *  held yet. @returns 0 without memory; clear `hold` in any case. */
 int mck_hold_init(mck_hold *hold, const mck_system *s, const unsigned char *contact);
 void mck_hold_clear(mck_hold *hold);
 
 /** Holds the coordinates of the contacts that are CONTACT_HELD. @returns NULL, or what went wrong. */
 const char *mck_hold_set(mck_hold *hold, const mck_system *s, const unsigned char *contact);
 
-/** Finds the forces mu for the free accelerations [n] and adds what they do; held entries become exactly zero. */
+/** Computes the forces mu for the free accelerations [n] and adds their effect; held entries become exactly zero. */
 void mck_hold_project(mck_hold *hold, const mck_system *s, double *acceleration);
 
-/** Position of a coordinate among the held ones; `count` when it is not. */
+/** Position of a coordinate among the held ones; `count` if it is not held. */
 size_t mck_hold_find(const mck_hold *hold, size_t coordinate);
 
 #endif

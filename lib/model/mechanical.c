@@ -1,4 +1,4 @@
-/* Mechanical systems of a user: rates, gaps, impulses, and the forces of contacts that persist. */
+/* Mechanical systems of a user: rates, gaps, impulses, and the forces of contacts that stick. */
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -16,7 +16,7 @@ typedef struct mechanical {
   ric_mechanical model;
   user_gap gap;
   double *restitution;                       /* [obstacles] */
-  double *numbers;                           /* one block that all the following lie in, and the place of `gap` */
+  double *numbers;                           /* one block of memory for all the following and for `gap` */
   double *mass;                              /* [m][m], factorised */
   double *B, *b;                             /* [n][m], [n] of the last kinematics */
   double *gradient;                          /* [n] of the last gap */
@@ -101,7 +101,7 @@ static const char *mechanical_free_rate(const mechanical *s, double t, const dou
   return NULL;
 }
 
-/* Contacts of mechanical systems: how gaps change along a motion, and the forces that hold them. */
+/* Contacts of mechanical systems: gap rates and accelerations along a motion, and the forces of contacts that stick. */
 
 /* g and w = M^-1 g of contact k of the list, and its row of g^T M^-1 g. */
 static const char *held_row(const mechanical *s, size_t k, size_t count, double t, const double *q) {
@@ -122,7 +122,7 @@ typedef struct motion_path {
   const double *q, *u, *q_rate, *u_rate;
 } motion_path;
 
-/* Step in time of the derivative of a gap rate, for coordinates that move by at most it. */
+/* Step in time for the derivative of a gap rate; coordinates move by at most as much. */
 static const double path_step = 1.0 / 512;
 
 static const char *mechanical_gap_rate(const ric_system *system, size_t obstacle, double t, const double *q,
@@ -157,12 +157,12 @@ static const char *mechanical_gap_acceleration(const ric_system *system, size_t 
 /** Adds the forces of the held contacts to free rates, with kinematics and mass at (t, q); s->held lists the contacts,
  *  s->lambda their forces, `count` how many. @param contact  NULL: none */
 /* The forces make the second derivatives of the held gaps vanish: (g^T M^-1 g) lambda = -h'' of the free motion. A
- * contact whose gradient depends on those before it is held by them and gets no force. */
+ * contact whose gradient depends on the previous ones is held by them and gets no force. */
 static const char *mechanical_hold(const mechanical *s, const unsigned char *contact, double t, const double *q,
                                    const double *u, const double *q_rate, double *u_rate, size_t *count) {
   size_t m = s->model.speeds;
   TRY_TEXT(system_list_held(&s->base, contact, s->held_most, s->held, count));
-  for (size_t k = 0; k < *count; k++) /* all of them first: accelerations use the place of the kinematics */
+  for (size_t k = 0; k < *count; k++) /* all of them first: accelerations overwrite the kinematics */
     TRY_TEXT(held_row(s, k, *count, t, q));
   for (size_t k = 0; k < *count; k++) {
     TRY_TEXT(mechanical_gap_acceleration(&s->base, s->held[k], t, q, u, q_rate, u_rate, &s->lambda[k]));

@@ -25,7 +25,7 @@ static ric_status refuse_user_system(const ric_system *system, ric_error *error)
   return RIC_OK;
 }
 
-/* A link without one of its ends joins the other to a wall. */
+/* A link with one end missing joins the other end to a wall. */
 static void add_link(double *K, size_t n, double stiffness, size_t left, size_t right) {
   if (left < n)
     K[left * n + left] += stiffness;
@@ -46,7 +46,7 @@ static void assemble_lattice(const ric_lattice *lattice, double *K) {
     add_link(K, n, ric_lattice_link(lattice, i).linear, i > 0 ? i - 1 : ring ? n - 1 : n, i);
 }
 
-/* Dense rows stand in panels (mck_rows.h); entries of sparse ones may be given in parts. */
+/* Dense rows are stored in panels (mck_rows.h); sparse matrices may have repeated entries. */
 static void read_mck(const mck_system *s, double *K) {
   size_t n = s->base.coordinates;
   for (size_t i = 0; i < n; i++) {
@@ -76,7 +76,7 @@ static ric_status make_symmetric(double *K, size_t n, ric_error *error) {
   return RIC_OK;
 }
 
-/** K [n][n] row-major, symmetric to the last bit; nonlinear terms and obstacles are left aside.
+/** K [n][n] row-major, symmetric to the last bit; nonlinear terms and obstacles are ignored.
  *  @returns RIC_EINVAL for user systems, and for a matrix that is not symmetric beyond rounding. */
 static ric_status linear_part_stiffness(const ric_system *system, double *stiffness, ric_error *error) {
   size_t n = system->coordinates;
@@ -89,7 +89,7 @@ static ric_status linear_part_stiffness(const ric_system *system, double *stiffn
   return make_symmetric(stiffness, n, error);
 }
 
-/** M: [n] of a diagonal one (system->uncoupled), [n][n] otherwise. Lattices and M-C-K systems only. */
+/** M: [n] if diagonal (system->uncoupled), [n][n] otherwise. Lattices and M-C-K systems only. */
 static void linear_part_mass(const ric_system *system, double *mass) {
   size_t n = system->coordinates;
   if (!system->uncoupled)
@@ -98,7 +98,8 @@ static void linear_part_mass(const ric_system *system, double *mass) {
     mass[i] = system->model->mass(system, i);
 }
 
-/* --- what else there may be --------------------------------------------------------------------------------------- */
+/* --- terms beyond the linear part
+ * --------------------------------------------------------------------------------------- */
 
 static ric_status refuse_spring(const ric_spring *s, const char *what, size_t i, ric_error *error) {
   const double value[] = {s->quadratic, s->cubic, s->damping};
@@ -146,7 +147,8 @@ ric_status linear_part_is_all(const ric_system *system, ric_error *error) {
                                           : mck_is_linear(mck_of(system), error);
 }
 
-/* Components this near to the largest, relatively, are as large: which one is the first must not depend on rounding. */
+/* Components this close to the largest, relatively, count as equal to it, so that rounding does not decide which is the
+ * first. */
 static const double tie = 1e-6;
 
 /* The eigenvalue problem of A = L^-1 K L^-T. */
@@ -223,8 +225,8 @@ static ric_status reduce(problem *p, ric_error *error) {
   return RIC_OK;
 }
 
-/* Brings the largest entry to about 1, by a power of two whose root is one, too: the eigenvalue problem squares
- * numbers, and does not end where they underflow. */
+/* Scales the largest entry to about 1 by an even power of two: the eigenvalue problem squares numbers, and does not
+ * converge if they underflow. */
 static void scale(problem *p) {
   int power;
   frexp(largest(p->a, p->n * p->n), &power);
@@ -277,7 +279,7 @@ ric_status ric_normal_modes(const ric_system *system, double *frequency, double 
   problem p = {0};
   if (system->taylor == SYSTEM_USER)
     return ric_fail(error, RIC_EINVAL, "modes of a user system, expected a lattice or an M-C-K system");
-  gsl_error_handler_t *handler = gsl_set_error_handler_off(); /* which would abort when there is no memory */
+  gsl_error_handler_t *handler = gsl_set_error_handler_off(); /* which would abort without memory */
   ric_status status = problem_init(&p, system, error);
   if (status == RIC_OK)
     status = solve_eigenproblem(&p, system, error);

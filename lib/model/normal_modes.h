@@ -4,8 +4,8 @@
 
 #include "system_model.h"
 
-/** @returns RIC_EINVAL naming the first thing that an undamped, free, linear system has not: damping, forcing,
- * nonlinear terms; for user systems, of which that cannot be known. */
+/** @returns RIC_EINVAL naming the first term that an undamped, free, linear system does not have: damping, forcing,
+ * nonlinear terms; also for user systems, whose terms are unknown. */
 ric_status linear_part_is_all(const ric_system *system, ric_error *error);
 
 #endif

@@ -45,7 +45,7 @@ static void sort_by_coordinate(const ric_obstacle *obstacles, size_t *order, siz
   }
 }
 
-/* Rigid obstacles of one coordinate stand next to each other in the order. */
+/* In this order the rigid obstacles of a coordinate are adjacent. */
 ric_status system_check_room(const ric_system *s, ric_error *error) {
   double low = -INFINITY, high = INFINITY;
   for (size_t k = 0; s->obstacles && k < s->obstacle_count; k++) {
@@ -85,7 +85,7 @@ ric_status system_take_obstacles(ric_system *s, const ric_obstacle *obstacles, s
   return RIC_OK;
 }
 
-/* What memory, and lists of contacts, are made for. */
+/* Properties on which memory and lists of contacts depend. */
 static ric_status check_same_place(const ric_obstacle *o, const ric_obstacle *now, size_t j, ric_error *error) {
   bool rigid = o->stiffness == INFINITY;
   if (o->coordinate != now->coordinate)

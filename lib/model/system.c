@@ -1,4 +1,4 @@
-/* What all systems share: life, obstacles, tangent vectors by differences. */
+/* Common part of all systems: creation, obstacles, tangent vectors by differences. */
 #include "system_model.h"
 
 #include <math.h>

@@ -1,4 +1,4 @@
-/* Callbacks of a user, and the gaps that they give. */
+/* Callbacks of a user, and the gaps that they define. */
 #include "user_gap.h"
 
 #include <math.h>
@@ -17,16 +17,16 @@ const char *callback_check(int code, const double *x, size_t count, const char *
   return all_finite(x, count) ? NULL : not_finite;
 }
 
-/* Problems are dimensionless: with this step the extrapolated differences err by 2e-15 on functions that vary over
- * lengths of 1, by 2e-11 over lengths of 0.1, and rounding adds about 3e-13. */
+/* Problems are dimensionless: with this step the error of the extrapolated differences is 2e-15 for functions that vary
+ * over lengths of 1, 2e-11 for lengths of 0.1; rounding adds about 3e-13. */
 static const double difference_step = 1.0 / 1024;
 
 const char *user_gap_value(const user_gap *g, size_t obstacle, double t, const double *q, double *h) {
   return callback_check(g->gap(t, q, obstacle, h, g->user), h, 1, CALLBACK_TEXTS("gap"));
 }
 
-/* Central difference in one variable, *x, which is the time or an entry of g->point. The difference of the arguments as
- * they were rounded divides, so that large coordinates cost nothing. */
+/* Central difference in one variable, *x, which is the time or an entry of g->point. The divisor is the difference of
+ * the rounded arguments, so that large coordinates cost no accuracy. */
 static const char *slope(const user_gap *g, size_t obstacle, const double *t, double *x, double step, double *out) {
   double middle = *x, up = middle + step, down = middle - step, above, below;
   *x = up;

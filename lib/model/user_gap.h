@@ -1,4 +1,4 @@
-/* Callbacks of a user, and the gaps that they give. Internal to the library. */
+/* Callbacks of a user, and the gaps that they define. Internal to the library. */
 #ifndef RICOCHET_USER_GAP_H
 #define RICOCHET_USER_GAP_H
 
@@ -7,9 +7,9 @@
 
 #include "system_model.h"
 
-/* Callbacks of user systems: what their answers are checked for. */
+/* Callbacks of user systems: checks of their return codes and values. */
 
-/** Returns what went wrong (a static text) to the caller. */
+/** Returns the failure (a static text) to the caller. */
 #define TRY_TEXT(call)                                                                                                 \
   do {                                                                                                                 \
     const char *try_text = (call);                                                                                     \
@@ -37,7 +37,7 @@ typedef struct user_gap {
 
 const char *user_gap_value(const user_gap *g, size_t obstacle, double t, const double *q, double *h);
 
-/** Gradient [coordinates] in q and the derivative in t; by differences where there is no callback. */
+/** Gradient [coordinates] in q and the derivative in t; by differences if there is no callback. */
 const char *user_gap_gradient(const user_gap *g, size_t obstacle, double t, const double *q, double *gradient,
                               double *in_time);
 

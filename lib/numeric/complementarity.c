@@ -8,17 +8,18 @@
 
 #include "linear.h"
 
-/* An unknown depends on others when so little of its unit diagonal is left: directions of contacts less than 1e-5
- * apart are the same one. */
+/* An unknown depends on others if its unit diagonal is reduced below this: contact directions that differ by less than
+ * 1e-5 count as equal. */
 static const double dependence_tol = 1e-10;
 
-/* What is left may come out negative by rounding errors over the square root of that, and more is no rounding error. */
+/* A reduced diagonal may be negative by rounding errors divided by the square root of the value above; more is no
+ * rounding error. */
 static const double indefinite_tol = 1e-8;
 
-/* w counts as zero up to so much of the terms it is the sum of, enough for the rounding errors of the solution. */
+/* w counts as zero below this fraction of its terms, which covers the rounding errors of the solution. */
 static const double residual_tol = 1e-12;
 
-/* Exchanges per unknown before rounding errors are taken to go round in circles; a few are usual. */
+/* Largest number of exchanges per unknown before rounding errors are assumed to cycle; a few are usual. */
 enum { MOST_EXCHANGES = 50 };
 
 static const char no_solution[] = "there is no solution";
@@ -28,7 +29,7 @@ static const char rounding_decides[] = "rounding errors decide";
 typedef enum unknown_state {
   OUTSIDE, /* of S, zero */
   INSIDE,
-  PASSED /* outside, and its w is zero up to rounding errors as long as S stays */
+  PASSED /* outside; its w is zero up to rounding errors until S changes */
 } unknown_state;
 
 /* The problem with rows and columns scaled to a unit diagonal, and the set S of unknowns that may be positive. */
@@ -76,7 +77,7 @@ static problem lay_out_work(const complementarity_work *w, size_t size) {
   return p;
 }
 
-/* @returns whether all is finite and the diagonal is that of a positive semidefinite matrix. */
+/* @returns whether all entries are finite and the diagonal is that of a positive semidefinite matrix. */
 static bool scale(problem *p, const double *A, const double *b) {
   size_t n = p->size;
   for (size_t i = 0; i < n; i++) {
@@ -100,7 +101,7 @@ static bool scale(problem *p, const double *A, const double *b) {
 
 /* --- Cholesky's factor of A_SS --------------------------------------------------------------------------------- */
 
-/* Row of the factor for member `place` of S; the earlier ones are there. @returns what is left of the diagonal */
+/* Row of the factor for member `place` of S; the earlier ones exist. @returns the reduced diagonal */
 static double factor_row(problem *p, size_t place) {
   double *row = p->factor + place * p->size;
   for (size_t k = 0; k <= place; k++)
@@ -134,7 +135,7 @@ static double residual_at(const problem *p, size_t i, double *terms) {
   return w;
 }
 
-/* The unknown outside S with the most negative w; `size` when none has one. */
+/* The unknown outside S with the most negative w; `size` if none is negative. */
 static size_t find_entering(const problem *p) {
   size_t found = p->size;
   double least = 0;
@@ -148,13 +149,13 @@ static size_t find_entering(const problem *p) {
   return found;
 }
 
-/* Moves z_S by `share` of the way `step` [count]. */
+/* Adds share * step [count] to z_S. */
 static void move(problem *p, const double *step, double share) {
   for (size_t k = 0; k < p->count; k++)
     p->z[p->set[k]] += share * step[k];
 }
 
-/* The member of S that first comes to zero on the way z_S + share step, share <= `most`; `count` when none does. */
+/* The member of S that reaches zero first along z_S + share step, share <= `most`; `count` if none does. */
 static size_t find_blocking(const problem *p, const double *step, double most, double *share) {
   size_t found = p->count;
   *share = most;
@@ -166,8 +167,8 @@ static size_t find_blocking(const problem *p, const double *step, double most, d
   return found;
 }
 
-/* Moves z_S to the solution for S; members that come to zero on the way leave. */
-static void settle(problem *p) {
+/* Moves z_S to the solution for S; members that reach zero leave S. */
+static void solve_set(problem *p) {
   while (p->count > 0) {
     double share;
     for (size_t k = 0; k < p->count; k++)
@@ -184,7 +185,7 @@ static void settle(problem *p) {
   }
 }
 
-/* Puts `enter` into S; its row of the factor is there or will be made by the caller. */
+/* Adds `enter` to S; its row of the factor exists or will be computed by the caller. */
 static void include(problem *p, size_t enter) {
   for (size_t i = 0; i < p->size; i++)
     p->state[i] = p->state[i] == PASSED ? OUTSIDE : p->state[i];
@@ -192,7 +193,7 @@ static void include(problem *p, size_t enter) {
   p->state[enter] = INSIDE;
 }
 
-/* As `enter` depends on S, its w is the same combination of those of S: zero, or what their rounding errors leave. */
+/* Since `enter` depends on S, its w is the same combination of those of S: zero up to their rounding errors. */
 static bool is_rounding(const problem *p, size_t enter, const double *direction) {
   double terms, sum = 1, w = residual_at(p, enter, &terms);
   for (size_t k = 0; k < p->count; k++)
@@ -200,8 +201,8 @@ static bool is_rounding(const problem *p, size_t enter, const double *direction)
   return fabs(w) <= residual_tol * terms * sum;
 }
 
-/* Unknown `enter` depends on S, so that a direction leaves w_S as it is and lowers the minimum: along it until a member
- * of S comes to zero, which `enter` replaces. @returns NULL, or why there is no solution */
+/* Unknown `enter` depends on S, so there is a direction that leaves w_S unchanged and decreases the objective. Follows
+ * it until a member of S reaches zero, which `enter` replaces. @returns NULL, or why there is no solution */
 static const char *exchange(problem *p, size_t enter) {
   double share, *direction = p->target;
   memcpy(direction, p->factor + p->count * p->size, p->count * sizeof *direction);
@@ -219,7 +220,7 @@ static const char *exchange(problem *p, size_t enter) {
   p->z[enter] = share;
   remove_member(p, blocking);
   include(p, enter);
-  if (factor_row(p, p->count - 1) <= dependence_tol) /* on what remains of S as well: that is looked at again */
+  if (factor_row(p, p->count - 1) <= dependence_tol) /* on the remaining S as well: tested again */
     remove_member(p, p->count - 1);
   return NULL;
 }
@@ -244,7 +245,7 @@ static const char *solve_problem(problem *p) {
     const char *trouble = enter_set(p, enter);
     if (trouble)
       return trouble;
-    settle(p);
+    solve_set(p);
   }
   return rounding_decides;
 }

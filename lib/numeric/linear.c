@@ -8,7 +8,7 @@
 #include <gsl/gsl_blas.h>
 #include <gsl/gsl_linalg.h>
 
-/* A pivot that has lost all but this part of its diagonal entry is rounding. */
+/* A pivot below this fraction of its diagonal entry is rounding. */
 static const double dependent = 1e-12;
 
 void cholesky_solve_lower(const double *factor, size_t stride, size_t n, double *x) {
@@ -114,7 +114,7 @@ ric_status linear_least_norm(double *matrix, size_t size, double *rhs, double *x
   return code ? fail(error, size, code) : RIC_OK;
 }
 
-static const double put_out = 1e-13; /* what is left of a vector, over it, that counts as rounding */
+static const double dependence_share = 1e-13; /* remainder of a vector, relative to it, that counts as rounding */
 
 ric_status orthonormal_init(orthonormal_work *w, size_t size, size_t count, ric_error *error) {
   w->factors = gsl_matrix_alloc(size, count);
@@ -134,8 +134,8 @@ void orthonormal_clear(orthonormal_work *w) {
   *w = (orthonormal_work){0};
 }
 
-/* Column k of Q, zero where the vector was put out. */
-static void take_column(const orthonormal_work *w, size_t k, bool gone, gsl_matrix *x) {
+/* Column k of Q; zero if the vector depends on the others. */
+static void copy_column(const orthonormal_work *w, size_t k, bool gone, gsl_matrix *x) {
   gsl_vector_set_basis(w->column, k);
   if (gone)
     gsl_vector_set_zero(w->column);
@@ -155,14 +155,14 @@ void orthonormal_make(orthonormal_work *w, double *x, double *growth) {
   gsl_linalg_QR_decomp(w->factors, w->tau);
   for (size_t k = 0; k < count; k++) {
     double left = fabs(gsl_matrix_get(w->factors, k, k));
-    bool gone = !(left > put_out * growth[k]);
+    bool gone = !(left > dependence_share * growth[k]);
     growth[k] = gone ? -INFINITY : log(left);
-    take_column(w, k, gone, &vectors.matrix);
+    copy_column(w, k, gone, &vectors.matrix);
   }
 }
 
 void orthonormal_scatter(orthonormal_work *w, double *x, double *growth) {
-  uint64_t state = 1; /* of a linear congruence */
+  uint64_t state = 1; /* of a linear congruential generator */
   for (size_t i = 0; i < w->factors->size1 * w->factors->size2; i++) {
     state = state * 6364136223846793005u + 1442695040888963407u;
     x[i] = (double)(state >> 11) / 0x1p52 - 1;

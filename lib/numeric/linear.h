@@ -10,18 +10,18 @@
 
 #include "ricochet/status.h"
 
-/* Cholesky's factorisation of small symmetric matrices, A = L L^T; row-major with rows of any stride, only the lower
- * triangle is looked at. */
+/* Cholesky's factorisation of small symmetric matrices, A = L L^T; row-major with rows of any stride; only the lower
+ * triangle is read. */
 
-/** A [n][n] becomes L in place. @returns false when A is not positive definite. */
+/** A [n][n] becomes L in place. @returns false if A is not positive definite. */
 bool cholesky_factor(double *a, size_t n);
 
-/** The same for a matrix that is at least positive semidefinite: an unknown whose column depends on those before it, to
- *  rounding, is left out (its column of L is zero with an infinite pivot, so that the solution has a zero there). */
+/** The same for a positive semidefinite matrix: an unknown whose column depends on the previous ones, to rounding, is
+ *  dropped (its column of L is zero with an infinite pivot, so that its solution is zero). */
 void cholesky_factor_semidefinite(double *a, size_t n);
 
-/** One row of it: entries 0 ... i of row i of A, behind rows 0 ... i - 1 of L, become those of L but for the last.
- *  @returns what is left of the diagonal entry, whose root is the last one. */
+/** One row of it: entries 0 ... i of row i of A, after rows 0 ... i - 1 of L, become those of L except for the last.
+ *  @returns the reduced diagonal entry, whose root is the last one. */
 double cholesky_row(double *a, size_t stride, size_t i);
 
 /** x [n] from L x = x, and from L^T x = x. */
@@ -33,14 +33,14 @@ void cholesky_solve(const double *factor, size_t n, double *x);
 
 /* Square linear systems that may be singular.
  *
- * The regular way is a QR factorisation with column pivoting, which also estimates the norm of the inverse. Where that
- * is beyond what the caller accepts, linear_least_norm solves a fresh copy of the system on its numerical rank: if the
+ * The regular method is a QR factorisation with column pivoting, which also estimates the norm of the inverse. If that
+ * exceeds the limit of the caller, linear_least_norm solves a fresh copy of the system on its numerical rank: if the
  * right-hand side is compatible, its solution is the smallest of many. */
 
-/** What became of the equations of an orbit. */
+/** Outcome of the equations of an orbit. */
 typedef struct linear_outcome {
   double condition;
-  bool singular; /* the condition number is beyond the limit */
+  bool singular; /* the condition number exceeds the limit */
   bool solvable; /* singular, but compatible: the solution is one of many */
 } linear_outcome;
 
@@ -53,12 +53,12 @@ typedef struct linear_work {
 
 /** Estimates from the triangular factor. */
 typedef struct linear_factor {
-  double norm, inverse_norm; /* 1-norms; inverse_norm is infinite when there is a zero on the diagonal */
+  double norm, inverse_norm; /* 1-norms; inverse_norm is infinite if there is a zero on the diagonal */
   double last;               /* its last and smallest diagonal entry */
 } linear_factor;
 
 /** Solves matrix x = rhs; the matrix [size][size] is overwritten.
- *  @param factor  set to what the triangular factor tells; with an infinite inverse_norm x is left alone */
+ *  @param factor  set from the triangular factor; with an infinite inverse_norm x is unchanged */
 ric_status linear_solve(double *matrix, size_t size, double *rhs, double *x, const linear_work *w,
                         linear_factor *factor, ric_error *error);
 
@@ -70,8 +70,8 @@ ric_status linear_least_norm(double *matrix, size_t size, double *rhs, double *x
 
 /* Orthonormal tangent vectors by the QR factorisation of GSL.
  *
- * A vector that lies in the span of those before it, to rounding, has been put out by the motion: it becomes zero, with
- * the growth -INFINITY. */
+ * A vector in the span of the previous ones, to rounding, has lost its direction: it becomes zero, with the growth
+ * -INFINITY. */
 
 /** Zeroed is empty. */
 typedef struct orthonormal_work {
@@ -88,8 +88,7 @@ void orthonormal_clear(orthonormal_work *work);
  *  @param growth  [count] set to the logarithms of the moduli of R's diagonal, x = Q R */
 void orthonormal_make(orthonormal_work *work, double *x, double *growth);
 
-/** Sets x to orthonormal vectors with no pattern, always the same ones: vectors that lie along the axes would miss for
- *  long what grows elsewhere.
+/** Sets x to fixed pseudo-random orthonormal vectors: vectors along the axes could miss growing directions for long.
  *  @param growth  [count] overwritten */
 void orthonormal_scatter(orthonormal_work *work, double *x, double *growth);
 

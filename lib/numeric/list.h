@@ -5,8 +5,8 @@
 #include <stddef.h>
 #include <stdlib.h>
 
-/** Room for one more item after `count`. @returns the items, which may have moved; NULL without memory: they are as
- *  before. */
+/** Makes room for one more item after `count`. @returns the items, which may have moved; NULL without memory: they are
+ *  unchanged. */
 static inline void *list_room(void *items, size_t count, size_t *capacity, size_t item_bytes) {
   if (count < *capacity)
     return items;

@@ -14,12 +14,12 @@
 
 enum { MOST_STEPS = 200 };
 
-/* Residuals within this of the tolerance that no longer fall are rounding of ill-conditioned problems. */
+/* Residuals below this multiple of the tolerance that no longer decrease are rounding of ill-conditioned problems. */
 static const double rounding = 1e4;
 
 typedef struct search {
   const newton_problem *problem;
-  ric_status status; /* of the last residual that failed for good */
+  ric_status status; /* of the last residual that failed permanently */
   ric_error *error;
   double *J;
   SUNContext context;
@@ -29,7 +29,7 @@ typedef struct search {
   void *memory;
 } search;
 
-/* To KINSOL: 0, 1 where a shorter step may help, -1 where nothing does. */
+/* Return codes of KINSOL: 0; 1 if a shorter step may help; -1 if not. */
 static int code_of(search *k, ric_status status) {
   k->status = status;
   return status == RIC_OK ? 0 : status == RIC_ENUMERIC ? 1 : -1;
@@ -141,7 +141,7 @@ static ric_status run_kinsol(search *k, double tolerance, int *iterations, ric_e
   if (k->status != RIC_OK && k->status != RIC_ENUMERIC)
     return k->status;
   if (code == KIN_FIRST_SYSFUNC_ERR)
-    return RIC_ENUMERIC;            /* with the residual's own words */
+    return RIC_ENUMERIC;            /* with the message of the residual */
   KINGetFuncNorm(k->memory, &left); /* Euclidean, scaled: not below the largest entry */
   if (left <= rounding * tolerance)
     return RIC_OK;

@@ -1,4 +1,4 @@
-/* Polynomials on [0, 1]: Chebyshev interpolation, certain minima and first roots, cheap looks before them. */
+/* Polynomials on [0, 1]: Chebyshev interpolation, certified minima and first roots, cheap tests before them. */
 #include "polynomial.h"
 
 #include <math.h>
@@ -130,14 +130,14 @@ static int sign_changes(const double *b, int degree, int order, int *first) {
   return changes;
 }
 
-/* Whether Newton's method has arrived: the next step would be below rounding by the rate at which steps shrink, or they
- * have stopped shrinking. `last` is the size of the step before, 0 when that was none of Newton's. */
-static int has_settled(double change, double last) {
+/* Whether Newton's method has converged: extrapolating the decrease of steps, the next one is below rounding, or they
+ * no longer shrink. `last` is the size of the previous step, 0 if that was no Newton step. */
+static int has_converged(double change, double last) {
   return change <= 1e-16 || (last > 0 && (change * change <= 1e-17 * last || (change <= 1e-9 && change >= 0.9 * last)));
 }
 
-/** The only root of the polynomial (order 0, falling) or of its derivative (order 1, rising) in [low, high], from a
- *  first guess inside. */
+/** The only root of the polynomial (order 0, decreasing) or of its derivative (order 1, increasing) in [low, high],
+ *  from a first guess inside. */
 /* Newton's method inside a shrinking bracket. */
 static double poly_bracketed_root(const double *c, int degree, int order, double low, double high, double guess) {
   double d[SIZE], x = guess, last = 0;
@@ -154,7 +154,7 @@ static double poly_bracketed_root(const double *c, int degree, int order, double
     if (!inside)
       next = (low + high) / 2;
     double change = fabs(next - x);
-    if (has_settled(change, inside ? last : 0))
+    if (has_converged(change, inside ? last : 0))
       return next;
     last = inside ? change : 0;
     x = next;
@@ -173,26 +173,25 @@ static void improve(double *best, double *best_at, double value, double at) {
   }
 }
 
-/* What a look asks: is the polynomial above a value; else, where has it fallen below the floor? */
+/* What a test asks: is the polynomial above a value; otherwise, where does it fall below the floor? */
 typedef struct question {
   double value, floor;
-  bool first; /* where it first falls, and not just whether */
+  bool first; /* where it first falls below, not only whether */
 } question;
 
-/* A polynomial, and what its high powers are good for on [0, 1]: bounds of their sum, of the size of its slope and of
- * its second derivative. */
-typedef struct looked {
+/* A polynomial with bounds on [0, 1] of the sum of its high powers, of their slope and of their second derivative. */
+typedef struct bounded_polynomial {
   const double *c;
   int degree;
   double fall, rise, steep, bend;
   double rounding;
-} looked;
+} bounded_polynomial;
 
 enum {
-  LOW_POWERS = 10, /* those that matter most in the segments of flows */
+  LOW_POWERS = 10, /* the dominant ones in segments of flows */
   LOW_SIZE = 12,   /* their coefficients, in whole lanes */
   LOW_VECTORS = LOW_SIZE / RIC_LANES,
-  LOW_DEPTH = 6, /* halvings after which looks give up */
+  LOW_DEPTH = 6, /* halvings after which tests give up */
   VALLEY_STEPS = 3
 };
 
@@ -202,7 +201,7 @@ typedef struct low_piece {
   double b[LOW_SIZE];
 } low_piece;
 
-/* A lower bound on [0, 1]: c_0 and the negative coefficients, in sums that do not wait for each other. */
+/* A lower bound on [0, 1]: c_0 and the negative coefficients, in independent partial sums. */
 static double least_by_signs(const double *c, int degree) {
   enum { SUMS = 4 };
   double sum[SUMS] = {0}, rest = c[0];
@@ -216,15 +215,15 @@ static double least_by_signs(const double *c, int degree) {
 }
 
 /* Relative to the sum of the (j + 1) |c_j|, which bounds all values and slopes: rounding of values, of slopes, of the
- * Bernstein form and its halves; and powers whose sum does not matter where a valley is sought. */
+ * Bernstein form and its halves; and the powers that are negligible in the search for a minimum. */
 static const double rounding_share = 1e-14, left_out = 1e-8;
 
-/* Takes the measure of a polynomial. @returns whether its coefficients alone keep it above the value */
-static bool measure(looked *l, const double *c, int degree, double value) {
+/* Computes the bounds of a polynomial. @returns whether its coefficients alone prove that it is above the value */
+static bool measure(bounded_polynomial *l, const double *c, int degree, double value) {
   double size = fabs(c[0]);
   if (least_by_signs(c, degree) > value)
     return true;
-  *l = (looked){.c = c, .degree = degree};
+  *l = (bounded_polynomial){.c = c, .degree = degree};
   for (int j = 1; j <= degree && j <= LOW_POWERS; j++)
     size += (j + 1) * fabs(c[j]);
   for (int j = LOW_POWERS + 1; j <= degree; j++) {
@@ -238,7 +237,7 @@ static bool measure(looked *l, const double *c, int degree, double value) {
   return false;
 }
 
-/* b = sum_i x[i * step] matrix[i]; side by side, where sums along b would wait for each other. */
+/* b = sum_i x[i * step] matrix[i], summed in parallel over the entries of b. */
 RIC_INLINE void transform(const double (*matrix)[LOW_SIZE], const double *x, int step, int count, double *b) {
   ric_lanes sum[LOW_VECTORS] = {0};
   for (int i = 0; i < count; i++)
@@ -267,7 +266,7 @@ RIC_VECTORISED static void low_form(const double *c, int degree, double *b) {
   transform(of_powers, c, 1, degree < LOW_POWERS ? degree + 1 : LOW_POWERS + 1, b);
 }
 
-/* What bounds on [0, 1] of the high powers, of their slope and bend are to be multiplied by on a piece. */
+/* Factor on a piece of the bounds on [0, 1] of the high powers, their slope and second derivative. */
 static double share_of(const low_piece *p) {
   double end = p->start + p->width, square = end * end, fourth = square * square;
   return fourth * fourth * end; /* the second derivative of power 11 */
@@ -280,7 +279,7 @@ static double smallest_low(const double *b) {
   return least;
 }
 
-static bool is_convex(const looked *l, const low_piece *p) {
+static bool is_convex(const bounded_polynomial *l, const low_piece *p) {
   double least = INFINITY;
   for (int j = 2; j <= LOW_POWERS; j++) {
     double second = p->b[j] - 2 * p->b[j - 1] + p->b[j - 2];
@@ -289,15 +288,15 @@ static bool is_convex(const looked *l, const low_piece *p) {
   return LOW_POWERS * (LOW_POWERS - 1) * (least - 4 * l->rounding) > share_of(p) * l->bend * p->width * p->width;
 }
 
-static bool is_falling(const looked *l, const low_piece *p) {
+static bool is_falling(const bounded_polynomial *l, const low_piece *p) {
   double most = -INFINITY;
   for (int j = 1; j <= LOW_POWERS; j++)
     most = p->b[j] - p->b[j - 1] > most ? p->b[j] - p->b[j - 1] : most;
   return LOW_POWERS * (most + 2 * l->rounding) < -share_of(p) * l->steep * p->width;
 }
 
-/* Powers with which a valley is looked at; what the others may take away is added to `missing`. */
-static int powers_that_matter(const looked *l, double *missing) {
+/* Powers used in the search for a minimum; the bound of the others is added to `missing`. */
+static int powers_that_matter(const bounded_polynomial *l, double *missing) {
   double most = left_out / rounding_share * l->rounding, sum = 0;
   int degree = l->degree;
   for (; degree > LOW_POWERS && sum + fabs(l->c[degree]) <= most; degree--)
@@ -318,9 +317,9 @@ RIC_INLINE double value_at(const double *c, int degree, double x, double *slope,
   return y;
 }
 
-/* On a piece where the polynomial is convex: it is above the value when the tangent is where Newton's method, first
- * with the low powers, has taken the slope to nearly zero. @param reach  set to where it is below the floor */
-static poly_look look_at_valley(const looked *l, const low_piece *p, const question *q, double *reach) {
+/* On a piece where the polynomial is convex: it is above the value if its tangent near the minimum is. Newton's method,
+ * first with the low powers, makes the slope nearly zero. @param reach  set to a place below the floor */
+static poly_look test_valley(const bounded_polynomial *l, const low_piece *p, const question *q, double *reach) {
   double missing = l->rounding, end = p->start + p->width, slope, bend;
   double fall = p->b[0] - p->b[1], rise = p->b[LOW_POWERS] - p->b[LOW_POWERS - 1];
   double x = p->start + p->width * (fall > 0 ? rise > 0 ? fall / (fall + rise) : 1 : 0);
@@ -341,8 +340,8 @@ static poly_look look_at_valley(const looked *l, const low_piece *p, const quest
   return POLY_UNDECIDED;
 }
 
-/* A convex polynomial meets the floor once on its way from above to below, and so does a falling one. */
-static poly_look look_at_piece(const looked *l, const low_piece *p, const question *q, double *reach) {
+/* A convex polynomial crosses the floor once from above to below, and so does a decreasing one. */
+static poly_look test_piece(const bounded_polynomial *l, const low_piece *p, const question *q, double *reach) {
   double start = p->b[0], end = p->b[LOW_POWERS], share = share_of(p);
   double high = share * l->rise + l->rounding, low = share * l->fall - l->rounding;
   bool ends_below = end + high < q->floor;
@@ -356,7 +355,7 @@ static poly_look look_at_piece(const looked *l, const low_piece *p, const questi
   bool convex = is_convex(l, p);
   if (ends_below)
     return convex || is_falling(l, p) ? POLY_FALLS : POLY_UNDECIDED;
-  return convex ? look_at_valley(l, p, q, reach) : POLY_UNDECIDED;
+  return convex ? test_valley(l, p, q, reach) : POLY_UNDECIDED;
 }
 
 /* De Casteljau at 1/2, of coefficient i to coefficient j of the first half: binomial(j, i) / 2^j. */
@@ -387,23 +386,23 @@ RIC_VECTORISED static void halve_low(low_piece *p, low_piece *left) {
     p->b[j] = right[LOW_POWERS - j];
 }
 
-/* Looks along the pieces, up to the first on which the polynomial is not above the value.
- * @param found, reach  that piece, and where it is below the floor on it */
-static poly_look look_along(const looked *l, const question *q, low_piece *found, double *reach) {
+/* Tests the pieces in order, up to the first on which the polynomial is not above the value. @param found, reach  that
+ * piece, and a place below the floor on it */
+static poly_look test_pieces(const bounded_polynomial *l, const question *q, low_piece *found, double *reach) {
   low_piece stack[LOW_DEPTH + 1];
   int depth = 1;
   stack[0].start = 0, stack[0].width = 1;
   low_form(l->c, l->degree, stack[0].b);
   while (depth > 0) {
     low_piece *p = &stack[--depth];
-    poly_look answer = look_at_piece(l, p, q, reach);
+    poly_look answer = test_piece(l, p, q, reach);
     if (answer == POLY_ABOVE)
       continue;
     if (answer == POLY_FALLS || p->width < 1.5 / (1 << LOW_DEPTH)) {
       *found = *p;
       return answer;
     }
-    halve_low(p, p + 1); /* the first half lands on top and is looked at first */
+    halve_low(p, p + 1); /* the first half is on top of the stack and comes first */
     depth += 2;
   }
   return POLY_ABOVE;
@@ -411,10 +410,10 @@ static poly_look look_along(const looked *l, const question *q, low_piece *found
 
 poly_look poly_look_above(const double *c, int degree, double value) {
   question q = {.value = value, .floor = value};
-  looked l;
+  bounded_polynomial l;
   low_piece found;
   double reach;
-  return measure(&l, c, degree, value) ? POLY_ABOVE : look_along(&l, &q, &found, &reach);
+  return measure(&l, c, degree, value) ? POLY_ABOVE : test_pieces(&l, &q, &found, &reach);
 }
 
 int ric_poly_minimum(const double *c, int degree, double cutoff, double tolerance, double *at, double *value) {
@@ -450,9 +449,9 @@ int ric_poly_minimum(const double *c, int degree, double cutoff, double toleranc
 
 static const double slope_rounding = 2e-15; /* of the bounds below, relative to the sum of the coefficients' sizes */
 
-/* Whether there is no minimum inside, as far as cheap bounds can say: the slope keeps its sign, or it falls everywhere.
+/* Whether cheap bounds exclude a minimum inside: the slope keeps its sign, or it decreases everywhere.
  */
-static int has_no_valley(const double *c, int degree) {
+static int excludes_minimum(const double *c, int degree) {
   double low = degree > 0 ? c[1] : 0, high = low, curvature = degree > 1 ? 2 * c[2] : 0, size = fabs(low);
   for (int j = 2; j <= degree; j++) {
     double slope = j * c[j];
@@ -466,10 +465,10 @@ static int has_no_valley(const double *c, int degree) {
 }
 
 int ric_poly_first_minimum(const double *c, int degree, double cutoff, double *at, double *value) {
-  if (has_no_valley(c, degree) || poly_look_above(c, degree, cutoff) == POLY_ABOVE)
+  if (excludes_minimum(c, degree) || poly_look_above(c, degree, cutoff) == POLY_ABOVE)
     return 0;
   piece stack[DEPTH + 1];
-  int depth = 1, before = 0; /* sign of the slope at the end of the pieces done */
+  int depth = 1, before = 0; /* sign of the slope at the end of the processed pieces */
   stack[0].start = 0, stack[0].width = 1;
   ric_poly_bernstein(c, degree, stack[0].b);
   while (depth > 0) {
@@ -477,7 +476,7 @@ int ric_poly_first_minimum(const double *c, int degree, double cutoff, double *a
     int first, changes = sign_changes(p->b, degree, 1, &first), inside = changes == 1 && first < 0;
     int low = smallest(p->b, degree) <= cutoff, between = before < 0 && first > 0;
     if (low && changes > 1 && depth < DEPTH) {
-      halve(p, p + 1, degree); /* the first half lands on top and is looked at first */
+      halve(p, p + 1, degree); /* the first half is on top of the stack and comes first */
       depth += 2;
       continue;
     }
@@ -494,7 +493,7 @@ int ric_poly_first_minimum(const double *c, int degree, double cutoff, double *a
 }
 
 /* First piece that holds a root: its first point is not positive, or it has exactly one root. Returns its number of
- * sign changes, -1 when there is none. */
+ * sign changes, -1 if there is none. */
 static int piece_of_first_root(const double *c, int degree, piece *stack) {
   int depth = 1;
   stack[0].start = 0, stack[0].width = 1;
@@ -505,7 +504,7 @@ static int piece_of_first_root(const double *c, int degree, piece *stack) {
     if (p->b[0] > 0 && changes == 0 && p->b[degree] > 0)
       continue;
     if (p->b[0] > 0 && changes > 1 && depth < DEPTH) {
-      halve(p, p + 1, degree); /* the first half lands on top and is looked at first */
+      halve(p, p + 1, degree); /* the first half is on top of the stack and comes first */
       depth += 2;
       continue;
     }
@@ -539,12 +538,12 @@ int ric_poly_is_positive(const double *c, int degree) {
 
 poly_look poly_look_fall(const double *c, int degree, double value, double *at) {
   question q = {.value = value, .floor = 0, .first = true};
-  looked l;
+  bounded_polynomial l;
   low_piece p;
   double reach;
   if (measure(&l, c, degree, value))
     return POLY_ABOVE;
-  poly_look answer = look_along(&l, &q, &p, &reach);
+  poly_look answer = test_pieces(&l, &q, &p, &reach);
   if (answer == POLY_FALLS)
     *at = poly_bracketed_root(c, degree, 0, p.start, reach, p.start + (reach - p.start) / 2);
   return answer;

@@ -1,32 +1,32 @@
-/* Polynomials on [0, 1]: Chebyshev interpolation, certain minima and first roots, and cheap looks that mostly suffice.
- * Internal to the library. */
+/* Polynomials on [0, 1]: Chebyshev interpolation, certified minima and first roots, and cheap tests that mostly
+ * suffice. Internal to the library. */
 #ifndef RICOCHET_INTERNAL_POLYNOMIAL_H
 #define RICOCHET_INTERNAL_POLYNOMIAL_H
 
 #include <stdbool.h>
 
-/* Cheap looks at polynomials on [0, 1] with certain answers, for most of what is asked of the segments of a motion.
+/* Cheap certified tests (`looks`) of polynomials on [0, 1], sufficient for most segments of a motion.
  *
- * The low powers have a Bernstein form of fixed size, halved a few times; the high powers, which are small in segments,
- * are bounds of their sum, slope and bend. Where a piece is convex a tangent in its valley bounds it sharply. What
- * these looks leave open is for ricochet/polynomial.h to say. */
+ * The low powers have a Bernstein form of fixed size, which is halved a few times. The high powers, small in segments,
+ * are replaced by bounds of their sum, slope and second derivative. On a convex piece a tangent near its minimum is a
+ * sharp bound. The functions of ricochet/polynomial.h decide the remaining cases. */
 
 typedef enum poly_look {
   POLY_ABOVE,    /* above the value on all of [0, 1] */
-  POLY_FALLS,    /* not so: see the function */
+  POLY_FALLS,    /* not above: see the function */
   POLY_UNDECIDED /* no answer */
 } poly_look;
 
-/** @returns POLY_FALLS when it is at most the value somewhere */
+/** @returns POLY_FALLS if it is at most the value somewhere */
 poly_look poly_look_above(const double *c, int degree, double value);
 
 /** @param value  >= 0
- *  @param at  of POLY_FALLS: it stays above the value until it falls through it and through zero, which it meets here
- *             for the first time, without a minimum before */
+ *  @param at  for POLY_FALLS: its first zero. It stays above the value until it falls through the value and zero,
+ *             without a minimum before */
 poly_look poly_look_fall(const double *c, int degree, double value, double *at);
 
-/** Whether a polynomial that is zero to rounding at 0, and rises there, is positive from there on, without a minimum of
- *  at most `value`. False is no answer. */
+/** Whether a polynomial that is zero to rounding at 0, and increases there, is positive for all x > 0, without a
+ *  minimum of at most `value`. False: undecided. */
 bool poly_look_leaves(const double *c, int degree, double value);
 
 /* Interpolation at Chebyshev points of [0, 1]. */

@@ -9,7 +9,7 @@
 #error "SUNDIALS must be built for double precision"
 #endif
 
-/** @returns 0, or not. Free it by SUNContext_Free. */
+/** @returns 0, or non-zero on failure. Free it with SUNContext_Free. */
 int sundials_context_create(SUNContext *context);
 
 #if SUNDIALS_VERSION_MAJOR < 7

@@ -5,7 +5,7 @@
 #include <math.h>
 #include <stddef.h>
 
-/** Largest absolute value of x [count]; 0 for none, and NaN does not count. */
+/** Largest absolute value of x [count]; 0 if empty. NaN is ignored. */
 static inline double largest(const double *x, size_t count) {
   double most = 0;
   for (size_t i = 0; i < count; i++)

@@ -1,9 +1,9 @@
-/* Loops over particles for wide vector registers: internal to the library.
+/* Loops over particles for wide vector registers (SIMD): internal to the library.
  *
- * A static function marked RIC_VECTORISED is compiled twice and the processor decides. Both variants compute the same
- * operations in the same order, without fused multiplications, so results are the same bits. One marked RIC_WIDE, where
- * there is such a thing, is for processors of which ric_has_wide() says that they work on eight numbers at a time:
- * types of that size are slow on all others. */
+ * A static function marked RIC_VECTORISED is compiled twice, and the processor selects the variant. Both variants
+ * perform the same operations in the same order, without fused multiplications, so results are equal in every bit. A
+ * function marked RIC_WIDE, if the compiler supports it, is for processors with registers of eight numbers
+ * (ric_has_wide()): types of that size are slow on all others. */
 #ifndef RICOCHET_VECTORISED_H
 #define RICOCHET_VECTORISED_H
 
@@ -11,7 +11,8 @@
     !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 #define RIC_VECTORISED __attribute__((target_clones("avx2", "default")))
 #define RIC_WIDE       __attribute__((target("avx512f")))
-#define RIC_INLINE     static inline __attribute__((always_inline)) /* so that a variant holds all it calls */
+#define RIC_INLINE                                                                                                     \
+  static inline __attribute__((always_inline)) /* so that each variant contains all functions it calls */
 #else
 #define RIC_VECTORISED
 #define RIC_INLINE static inline
@@ -24,9 +25,9 @@ static inline bool ric_has_wide(void) {
 }
 #endif
 
-/* Numbers side by side for sums that are not loops over particles: compilers do not find those. Operators act on every
- * lane, so results do not depend on whether there is such a type. Passed by pointer: the way values go depends on the
- * processor. */
+/* SIMD lanes for sums that are not loops over particles, which compilers do not vectorise. Operators act on every lane,
+ * so results do not depend on whether the type exists. Passed by pointer: the calling convention for values depends on
+ * the processor. */
 #if defined(__GNUC__)
 typedef double ric_lanes __attribute__((vector_size(32), aligned(8), may_alias));
 enum { RIC_LANES = 4 };

@@ -2,7 +2,7 @@
  *
  * Resonances cut the range into cells, in each of which S falls from +infinity to -infinity; its zero, the blow-up,
  * cuts a cell into two pieces. On one of them the impulse pulls. On the other the margin of the orbits
- * (impact_response.h) is a continuous function of the period, and changes of its sign are grazing contacts. */
+ * (impact_modes.h) is a continuous function of the period, and changes of its sign are grazing contacts. */
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
@@ -11,7 +11,7 @@
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_roots.h>
 
-#include "impact_response.h"
+#include "impact_modes.h"
 #include "numeric/constants.h"
 
 enum { DEFAULT_SAMPLES = 64, MOST_SAMPLES = 1000000, MOST_ITERATIONS = 200, DIP_STEPS = 40 };
@@ -48,7 +48,8 @@ typedef struct search {
   size_t samples;
   sample *list; /* [2 samples + 4] those of a piece, with what is put between them */
   size_t count;
-  mark from; /* the beginning of the next interval */
+  mark from;       /* the beginning of the next interval */
+  ric_orbit orbit; /* in the middle of one */
   gsl_root_fsolver *brent;
   int (*seen)(const ric_impact_interval *interval, void *user);
   void *user;
@@ -58,14 +59,8 @@ typedef struct search {
 
 /* --- functions of the period and their zeros ---------------------------------------------------------------------- */
 
-static double margin_at(ric_impact_modes *m, double period) {
-  periodic_response response;
-  impact_verdict verdict;
-  return impact_verdict_margin(m, period, &response, &verdict);
-}
-
 static double margin_function(double period, void *user) {
-  return margin_at(user, period);
+  return impact_modes_margin(user, period, NULL);
 }
 
 /* S between two resonances, at which rounding may take it to the other side of a pole. */
@@ -99,12 +94,10 @@ static ric_status find_zero(search *s, double (*function)(double, void *), void 
 
 /* --- intervals ---------------------------------------------------------------------------------------------------- */
 
-static void describe_middle(const search *s, ric_impact_interval *interval) {
-  periodic_response response;
-  impact_verdict verdict;
-  impact_verdict_find(s->modes, interval->low / 2 + interval->high / 2, &response, &verdict);
-  if (interval->outcome == RIC_INADMISSIBLE)
-    snprintf(interval->reason, sizeof interval->reason, "%s", verdict.reason);
+static void describe_middle(search *s, ric_impact_interval *interval) {
+  if (interval->outcome == RIC_INADMISSIBLE &&
+      ric_impact_modes_orbit(s->modes, interval->low / 2 + interval->high / 2, &s->orbit, NULL) == RIC_OK)
+    snprintf(interval->reason, sizeof interval->reason, "%s", s->orbit.reason);
 }
 
 /* Hands out what lies between s->from and here. */
@@ -122,18 +115,17 @@ static void emit(search *s, const mark *to, bool admissible) {
 }
 
 static ric_status graze(search *s, const sample *before, const sample *after) {
-  periodic_response response;
-  impact_verdict verdict;
+  gap_found gap;
   mark touch = {.end = RIC_INTERVAL_GRAZING};
   RIC_TRY(find_zero(s, margin_function, s->modes, before->period, after->period, &touch.period));
-  impact_verdict_margin(s->modes, touch.period, &response, &verdict);
-  impact_verdict_touch(&verdict, touch.reason, sizeof touch.reason);
+  impact_modes_margin(s->modes, touch.period, &gap);
+  verdict_write_grazing(touch.reason, sizeof touch.reason, &s->modes->names, &gap);
   emit(s, &touch, before->margin > 0);
   return RIC_OK;
 }
 
 static void add_sample(search *s, double period) {
-  s->list[s->count++] = (sample){period, margin_at(s->modes, period)};
+  s->list[s->count++] = (sample){period, margin_function(period, s->modes)};
 }
 
 /* Where the margin comes nearest to zero from either side between two periods: golden section, which stops beyond zero.
@@ -142,19 +134,19 @@ static sample look_into_dip(search *s, const sample *left, const sample *right) 
   static const double golden = 0.61803398874989485;
   double a = left->period, b = right->period, sign = copysign(1, left->margin);
   sample x = {b - golden * (b - a), 0}, y = {a + golden * (b - a), 0};
-  x.margin = margin_at(s->modes, x.period);
-  y.margin = margin_at(s->modes, y.period);
+  x.margin = margin_function(x.period, s->modes);
+  y.margin = margin_function(y.period, s->modes);
   for (int i = 0; i < DIP_STEPS && sign * x.margin > 0 && sign * y.margin > 0; i++)
     if (sign * x.margin < sign * y.margin) {
       b = y.period;
       y = x;
       x.period = b - golden * (b - a);
-      x.margin = margin_at(s->modes, x.period);
+      x.margin = margin_function(x.period, s->modes);
     } else {
       a = x.period;
       x = y;
       y.period = a + golden * (b - a);
-      y.margin = margin_at(s->modes, y.period);
+      y.margin = margin_function(y.period, s->modes);
     }
   return sign * x.margin <= 0 ? x : y;
 }
@@ -224,8 +216,7 @@ static mark resonance(const ric_impact_modes *m, double period, bool after) {
     if (m->seen[j] == 0 || !(after ? l * shortest < found.period : l * shortest > found.period))
       continue;
     found.period = l * shortest;
-    snprintf(found.reason, sizeof found.reason,
-             "mode %zu is at resonance (harmonic %.0f): the impulse vanishes, the orbit is a linear mode", j, l);
+    verdict_write_mode(found.reason, sizeof found.reason, j, l);
   }
   return found;
 }
@@ -278,8 +269,10 @@ ric_status ric_impact_modes_intervals(ric_impact_modes *modes, double low, doubl
   gsl_error_handler_t *handler = gsl_set_error_handler_off();
   s.list = malloc((2 * s.samples + 4) * sizeof *s.list);
   s.brent = gsl_root_fsolver_alloc(gsl_root_fsolver_brent);
-  ric_status status =
-      s.list && s.brent ? walk(&s) : ric_fail(error, RIC_ENOMEM, "no memory for %zu samples", s.samples);
+  ric_status status = ric_orbit_init(&s.orbit, modes->n, 1, error);
+  if (status == RIC_OK)
+    status = s.list && s.brent ? walk(&s) : ric_fail(error, RIC_ENOMEM, "no memory for %zu samples", s.samples);
+  ric_orbit_clear(&s.orbit);
   free(s.list);
   if (s.brent)
     gsl_root_fsolver_free(s.brent);

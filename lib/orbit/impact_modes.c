@@ -1,17 +1,19 @@
-#include "ricochet/impact_modes.h"
+/* Orbits of linear systems with one impact per period: their modes, motion, gaps and verdict. */
+#include "impact_modes.h"
 
 #include <float.h>
 #include <math.h>
 #include <stdint.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "impact_response.h"
 #include "model/normal_modes.h"
 #include "numeric/constants.h"
 #include "numeric/number_block.h"
+#include "numeric/vector.h"
 #include "ricochet/normal_modes.h"
-#include "verdict.h"
+#include "ricochet/polynomial.h"
 
 /* Squares of frequencies nearer than this to each other, relative to the largest, are those of one space of modes: ten
  * times and more what rounding makes of equal ones, also with a mass matrix. Slow modes of stiff systems would be
@@ -51,7 +53,7 @@ static ric_status allocate_modes(ric_impact_modes *m, ric_error *error) {
   size_t n = m->n, vectors = n + 12 + MODES_ORDER;
   if (n < SIZE_MAX / sizeof(double) / vectors)
     m->block = calloc(n * vectors, sizeof *m->block);
-  m->obstacles = malloc(m->obstacle_count * sizeof *m->obstacles);
+  m->obstacles = malloc(m->names.count * sizeof *m->obstacles);
   if (!m->block || !m->obstacles)
     return ric_fail(error, RIC_ENOMEM, "no memory for the modes of %zu coordinates", n);
   double *store = m->block;
@@ -133,7 +135,8 @@ static void look_at_modes(ric_impact_modes *m) {
 
 static ric_status build_modes(ric_impact_modes *m, const ric_system *system, ric_error *error) {
   RIC_TRY(allocate_modes(m, error));
-  memcpy(m->obstacles, system->obstacles, m->obstacle_count * sizeof *m->obstacles);
+  memcpy(m->obstacles, system->obstacles, m->names.count * sizeof *m->obstacles);
+  m->names.obstacles = m->obstacles;
   RIC_TRY(ric_normal_modes(system, m->frequency, m->shape, error));
   if (!(m->frequency[0] > 0))
     return ric_fail(error, RIC_EINVAL, "frequency of the slowest mode = %g, expected > 0: the stiffness is singular",
@@ -151,7 +154,7 @@ ric_status ric_impact_modes_create(const ric_system *system, size_t obstacle, ri
   if (!m)
     return ric_fail(error, RIC_ENOMEM, "no memory for impact modes");
   m->n = system->coordinates;
-  m->obstacle_count = system->obstacle_count;
+  m->names = obstacle_names_of(system);
   m->obstacle = obstacle;
   m->hit = system->obstacles[obstacle].coordinate;
   m->options = ric_orbit_options_default();
@@ -190,16 +193,241 @@ static ric_status check_period(const ric_impact_modes *m, double period, ric_err
   return RIC_OK;
 }
 
-/* --- the orbit of a period ---------------------------------------------------------------------------------------- */
+/* --- the motion of a period --------------------------------------------------------------------------------------- */
 
-static void fill_clearance(const ric_impact_modes *m, const least_gap *free, ric_orbit *orbit) {
-  bool any = free->value < INFINITY;
-  orbit->clearance = any ? free->value : NAN;
-  orbit->clearance_time = free->time;
-  orbit->clearance_particle = any ? (long long)m->obstacles[free->obstacle].coordinate : -1;
+/* The response of a period; its C_j are in modes->amplitude. */
+typedef struct periodic_response {
+  double period;
+  double impulse;    /* p on the coordinate, 0 at a resonance; positive: upwards */
+  double condition;  /* bound of the largest displacement over |b| */
+  bool carried;      /* modes at resonance reach the obstacle without an impulse: `mode` is the fastest of them */
+  bool free;         /* `mode` is at resonance and does not move k: any amplitude of it may be added */
+  size_t mode;       /* of `carried` and `free` */
+  unsigned harmonic; /* its l */
+} periodic_response;
+
+/* Term of S; infinite at a resonance. */
+static double term(const ric_impact_modes *m, size_t j, double period) {
+  double half = m->frequency[j] * period / 2;
+  return m->seen[j] == 0 ? 0 : m->seen[j] * m->seen[j] * cos(half) / (2 * m->frequency[j] * sin(half));
 }
 
-static void fill(const ric_impact_modes *m, const periodic_response *r, const impact_verdict *v, ric_orbit *orbit) {
+double response_balance(const ric_impact_modes *modes, double period) {
+  double sum = 0, size = 0;
+  for (size_t j = 0; j < modes->n; j++) {
+    double value = term(modes, j, period);
+    sum += value;
+    size += fabs(value);
+  }
+  return sum / size;
+}
+
+/* l where w_j T = 2 pi l, otherwise 0. */
+static double harmonic_of(const ric_impact_modes *m, size_t j, double period, double tolerance) {
+  double turns = m->frequency[j] * period / (2 * pi), l = round(turns);
+  bool is = fabs(turns - l) <= tolerance || sin(m->frequency[j] * period / 2) == 0;
+  return is ? l : 0;
+}
+
+static void find_resonance(const ric_impact_modes *m, double tolerance, periodic_response *r) {
+  for (size_t j = 0; j < m->n; j++) {
+    double l = harmonic_of(m, j, r->period, tolerance);
+    bool moves = m->seen[j] != 0;
+    if (l < 1 || (r->carried && !moves))
+      continue;
+    r->carried = moves;
+    r->free = !moves;
+    r->mode = j;
+    r->harmonic = (unsigned)l;
+  }
+}
+
+/* The limit: modes at resonance share the way to the obstacle as phi_j(k)^2 / w_j^2, the ratio of the poles of S. */
+static void set_carried(ric_impact_modes *m, double tolerance, const periodic_response *r) {
+  double reached = 0, position = m->obstacles[m->obstacle].position;
+  for (size_t j = 0; j < m->n; j++) {
+    bool is = m->seen[j] != 0 && harmonic_of(m, j, r->period, tolerance) >= 1;
+    double share = is ? m->seen[j] / (m->frequency[j] * m->frequency[j]) : 0;
+    reached += share * m->seen[j];
+    m->amplitude[j] = share;
+  }
+  for (size_t j = 0; j < m->n; j++)
+    m->amplitude[j] *= position / reached * copysign(1, cos(m->frequency[j] * r->period / 2));
+}
+
+static void set_driven(ric_impact_modes *m, periodic_response *r) {
+  double sum = 0;
+  for (size_t j = 0; j < m->n; j++)
+    sum += term(m, j, r->period);
+  r->impulse = m->obstacles[m->obstacle].position / sum;
+  for (size_t j = 0; j < m->n; j++)
+    m->amplitude[j] =
+        m->seen[j] == 0 ? 0 : r->impulse * m->seen[j] / (2 * m->frequency[j] * sin(m->frequency[j] * r->period / 2));
+}
+
+/** @param resonance_tol  on |w_j T / (2 pi) - l|; 0 leaves resonances out unless a sine is zero
+ *  Sets modes->amplitude and modes->reach; they may be infinite. */
+static void response_find(ric_impact_modes *modes, double period, double resonance_tol, periodic_response *response) {
+  size_t n = modes->n;
+  double most = 0;
+  *response = (periodic_response){.period = period};
+  find_resonance(modes, resonance_tol, response);
+  if (response->carried)
+    set_carried(modes, resonance_tol, response);
+  else
+    set_driven(modes, response);
+  memset(modes->reach, 0, n * sizeof *modes->reach);
+  for (size_t j = 0; j < n; j++)
+    for (size_t i = 0; modes->amplitude[j] != 0 && i < n; i++)
+      modes->reach[i] += fabs(modes->amplitude[j] * modes->shape[j * n + i]);
+  for (size_t i = 0; i < n; i++)
+    most = modes->reach[i] <= most ? most : modes->reach[i]; /* keeps a NaN */
+  response->condition = most / fabs(modes->obstacles[modes->obstacle].position);
+}
+
+/* State at 0 <= t <= T, at 0 after the impact; v may be NULL. */
+static void response_state(const ric_impact_modes *modes, const periodic_response *response, double t, double *q,
+                           double *v) {
+  size_t n = modes->n;
+  memset(q, 0, n * sizeof *q);
+  if (v)
+    memset(v, 0, n * sizeof *v);
+  for (size_t j = 0; j < n; j++) {
+    double phase = modes->frequency[j] * (response->period / 2 - t);
+    double along = modes->amplitude[j] * cos(phase), rate = modes->amplitude[j] * modes->frequency[j] * sin(phase);
+    for (size_t i = 0; modes->amplitude[j] != 0 && i < n; i++) {
+      q[i] += along * modes->shape[j * n + i];
+      if (v)
+        v[i] += rate * modes->shape[j * n + i];
+    }
+  }
+}
+
+/* Gap rate of the obstacle that is hit, after the impact. */
+static double response_gap_rate(const ric_impact_modes *modes, const periodic_response *response) {
+  return modes->obstacles[modes->obstacle].side * response->impulse * modes->mobility[modes->hit] / 2;
+}
+
+static double response_energy(const ric_impact_modes *modes) {
+  double twice = 0;
+  for (size_t j = 0; j < modes->n; j++) {
+    double rate = modes->amplitude[j] * modes->frequency[j];
+    twice += rate * rate;
+  }
+  return twice / 2;
+}
+
+/* Longest segment, in angles of the fastest mode: its truncation error is 2.2^25 / 25! = 2e-17 of the amplitude. */
+static const double longest_angle = 2.2;
+
+typedef struct half_period {
+  size_t segments;
+  double length;
+} half_period;
+
+static half_period cut(ric_impact_modes *m, double period) {
+  double segments = ceil(period / 2 * m->fastest / longest_angle);
+  half_period h = {.segments = (size_t)segments, .length = period / 2 / segments};
+  for (size_t j = 0; j < m->n; j++) {
+    double angle = m->frequency[j] * h.length, power = 1;
+    for (size_t d = 0; d <= MODES_ORDER; d++) {
+      m->series[d * m->n + j] = d / 2 % 2 ? -power : power;
+      power *= angle / (double)(d + 1);
+    }
+  }
+  return h;
+}
+
+static void begin_segment(ric_impact_modes *m, double period, double start) {
+  for (size_t j = 0; j < m->n; j++) {
+    double phase = m->frequency[j] * (period / 2 - start);
+    m->cosine[j] = cos(phase);
+    m->sine[j] = sin(phase);
+  }
+}
+
+/* cos(phase - angle x) = cos(phase) cos(angle x) + sin(phase) sin(angle x), mode by mode. */
+static void expand(const ric_impact_modes *m, const ric_obstacle *o, double *c) {
+  size_t n = m->n;
+  for (size_t j = 0; j < n; j++) {
+    double amplitude = m->amplitude[j] * m->shape[j * n + o->coordinate];
+    m->even[j] = amplitude * m->cosine[j];
+    m->odd[j] = amplitude * m->sine[j];
+  }
+  for (size_t d = 0; d <= MODES_ORDER; d++) {
+    const double *part = d % 2 ? m->odd : m->even, *series = m->series + d * n;
+    double sum = 0;
+    for (size_t j = 0; j < n; j++)
+      sum += part[j] * series[j];
+    c[d] = o->side * sum;
+  }
+  c[0] -= o->side * o->position;
+}
+
+/* --- its gaps ----------------------------------------------------------------------------------------------------- */
+
+/* A bound from below for the whole motion. */
+static double bound(const ric_impact_modes *m, size_t obstacle) {
+  const ric_obstacle *o = &m->obstacles[obstacle];
+  return -o->side * o->position - m->reach[o->coordinate];
+}
+
+static void watch_segment(ric_impact_modes *m, double start, double length, gap_watch *w) {
+  double c[RIC_POLY_DEGREE + 1];
+  for (size_t j = 0; j < m->names.count; j++) {
+    bool hit = j == m->obstacle, divided = hit && start == 0;
+    if (!gap_watch_cares(w, hit, bound(m, j), start))
+      continue;
+    expand(m, &m->obstacles[j], c);
+    gap_watch_value(w, &(gap_piece){.c = c + divided,
+                                    .degree = MODES_ORDER - divided,
+                                    .start = start,
+                                    .length = length,
+                                    .to = 1,
+                                    .obstacle = j,
+                                    .hit = hit,
+                                    .divided = divided});
+  }
+}
+
+/* On minima, relative: rounding of the polynomials. */
+static const double minimum_tol = 1e-14;
+
+/* As orbit.h says: displacements at 0 and T/2, and speeds over the largest frequency for what lies between. */
+static double largest_displacement(ric_impact_modes *m, const periodic_response *r) {
+  response_state(m, r, r->period / 2, m->q, NULL);
+  double at_half = largest(m->q, m->n);
+  response_state(m, r, 0, m->q, m->v);
+  return fmax(fmax(at_half, largest(m->q, m->n)), largest(m->v, m->n) / m->fastest);
+}
+
+/* @param zero  gaps below -zero are violations, relative to the largest displacement, which is returned; m->q and m->v
+ *              are the state at 0 then */
+static double find_gaps(ric_impact_modes *m, const periodic_response *r, double zero, gap_watch *w) {
+  double scale = largest_displacement(m, r);
+  half_period h = cut(m, r->period);
+  gap_watch_begin(w, minimum_tol * scale / 2, zero * scale, INFINITY);
+  for (size_t s = 0; s < h.segments; s++) {
+    double start = (double)s * h.length;
+    begin_segment(m, r->period, start);
+    watch_segment(m, start, h.length, w);
+  }
+  return scale;
+}
+
+double impact_modes_margin(ric_impact_modes *modes, double period, gap_found *least) {
+  periodic_response response;
+  gap_watch gaps;
+  response_find(modes, period, 0, &response);
+  double scale = find_gaps(modes, &response, INFINITY, &gaps);
+  if (least)
+    *least = *gap_watch_least(&gaps);
+  return gap_watch_least(&gaps)->value / scale;
+}
+
+/* --- the orbit of a period ---------------------------------------------------------------------------------------- */
+
+static void fill(const ric_impact_modes *m, const periodic_response *r, ric_orbit *orbit) {
   size_t bytes = m->n * sizeof *m->q;
   const ric_obstacle *hit = &m->obstacles[m->obstacle];
   memcpy(orbit->q, m->q, bytes);
@@ -209,7 +437,23 @@ static void fill(const ric_impact_modes *m, const periodic_response *r, const im
   orbit->gap_rate[0] = r->carried ? 0 : -response_gap_rate(m, r);
   orbit->energy = response_energy(m);
   orbit->residual = fabs(m->q[m->hit] - hit->position);
-  fill_clearance(m, &v->free, orbit);
+}
+
+/* Impulses of the shortest periods underflow: then the obstacle is not reached. */
+static void judge(ric_impact_modes *m, const periodic_response *r, ric_orbit *orbit) {
+  gap_watch gaps;
+  double scale = find_gaps(m, r, m->options.grazing_tol, &gaps), allowed = m->options.residual_tol * scale;
+  const orbit_facts f = {.names = m->names, .gaps = &gaps, .slow = gaps.zero * m->fastest};
+  fill(m, r, orbit);
+  verdict_clearance(&f, orbit);
+  if (!(orbit->residual <= allowed)) {
+    verdict_violated(orbit, orbit->residual, allowed);
+  } else if (r->carried || r->free) {
+    verdict_resonant(orbit, r->carried, r->mode, r->harmonic);
+    verdict_add_violation(&f, orbit);
+  } else {
+    verdict_find(&f, orbit);
+  }
 }
 
 static ric_status check_room(const ric_impact_modes *m, const ric_orbit *orbit, ric_error *error) {
@@ -221,23 +465,24 @@ static ric_status check_room(const ric_impact_modes *m, const ric_orbit *orbit, 
 
 ric_status ric_impact_modes_orbit(ric_impact_modes *modes, double period, ric_orbit *orbit, ric_error *error) {
   periodic_response response;
-  impact_verdict verdict;
   RIC_TRY(check_room(modes, orbit, error));
   RIC_TRY(check_period(modes, period, error));
-  impact_verdict_find(modes, period, &response, &verdict);
-  if (verdict.outcome == RIC_SINGULAR)
+  response_find(modes, period, modes->options.resonance_tol, &response);
+  bool singular = !(response.condition < modes->options.singular_condition);
+  if (singular) {
     verdict_without_state(orbit, RIC_SINGULAR);
-  else
-    fill(modes, &response, &verdict, orbit);
-  bool special = verdict.outcome != RIC_SINGULAR && (response.carried || response.free);
-  orbit->outcome = verdict.outcome;
-  memcpy(orbit->reason, verdict.reason, sizeof orbit->reason);
+    snprintf(orbit->reason, sizeof orbit->reason,
+             "an impulse does not move coordinate %zu at its contact: amplitudes blow up (condition %.3g)", modes->hit,
+             response.condition);
+  }
   orbit->period = period;
+  orbit->condition = response.condition;
+  orbit->mode = -1;
+  orbit->harmonic = 0;
   orbit->impact_time[0] = 0;
   orbit->impact_obstacle[0] = modes->obstacle;
-  orbit->condition = response.condition;
-  orbit->mode = special ? (long long)response.mode : -1;
-  orbit->harmonic = special ? response.harmonic : 0;
+  if (!singular)
+    judge(modes, &response, orbit);
   return RIC_OK;
 }
 

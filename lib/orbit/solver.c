@@ -18,19 +18,6 @@
 #include "unit_cell.h"
 #include "verdict.h"
 
-const char *ric_outcome_name(ric_outcome outcome) {
-  switch (outcome) {
-#define X(name, text)                                                                                                  \
-  case name:                                                                                                           \
-    return text;
-    RIC_OUTCOME_LIST(X)
-#undef X
-  case RIC_OUTCOME_COUNT:
-    break;
-  }
-  return "unknown outcome";
-}
-
 ric_orbit_options ric_orbit_options_default(void) {
   return (ric_orbit_options){.method = RIC_METHOD_IMPULSE,
                              .clearance_tol = 1e-12,
@@ -373,7 +360,7 @@ static ric_status solve_on_cell(ric_orbit_solver *s, const ric_chain *chain, con
   orbit->energy = ric_chain_energy(chain, orbit->q, orbit->v);
   if (!isfinite(orbit->energy))
     return ric_fail(error, RIC_ENUMERIC, "energy is not finite: the displacements overflow");
-  return verdict_find(&s->motion, &s->cell, chain, pattern, &state, solution.singular, o, orbit, error);
+  return chain_verdict(s, chain, pattern, &state, solution.singular, orbit, error);
 }
 
 ric_status ric_orbit_solve(ric_orbit_solver *solver, const ric_chain *chain, const ric_pattern *pattern, double period,

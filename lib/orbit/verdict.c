@@ -1,112 +1,278 @@
-/* What becomes of an orbit: its smallest gaps, modes at resonance, the outcome and its reason. */
+/* The outcome of an orbit and its reason in words, however the orbit was found; and what comes before that for orbits
+ * of chains: their gaps on the segments of their motion, and modes at resonance. */
 #include "verdict.h"
 
 #include <math.h>
-#include <stdint.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "impulse.h"
 #include "model/image_ring.h"
 #include "numeric/constants.h"
+#include "solver.h"
 
-/* Gap of a site over a piece as a polynomial; returns its degree. At its own contact the gap is x times the result. */
-static int gap_of(const motion_piece *piece, const unit_cell *cell, size_t i, double *c) {
-  size_t site = piece->segment.first + i;
-  ric_role role = unit_cell_role(cell, site);
-  ric_segment_gap(&piece->segment, i, ric_chain_floor(&cell->chain, site), c);
-  if (!piece->at_contact || role != (piece->from_half ? RIC_ROLE_HALF : RIC_ROLE_START))
-    return piece->segment.degree;
-  for (int j = 0; j < piece->segment.degree; j++)
-    c[j] = c[j + 1];
-  return piece->segment.degree - 1;
+const char *ric_outcome_name(ric_outcome outcome) {
+  switch (outcome) {
+#define X(name, text)                                                                                                  \
+  case name:                                                                                                           \
+    return text;
+    RIC_OUTCOME_LIST(X)
+#undef X
+  case RIC_OUTCOME_COUNT:
+    break;
+  }
+  return "unknown outcome";
 }
 
-static double time_at(const motion_piece *piece, double x) {
-  return piece->segment.start + x * piece->segment.length;
+/* --- words -------------------------------------------------------------------------------------------------------- */
+
+obstacle_names obstacle_names_of(const ric_system *s) {
+  const char *noun = s->taylor == SYSTEM_LATTICE ? "particle" : "coordinate";
+  return (obstacle_names){.noun = s->obstacles ? noun : NULL, .obstacles = s->obstacles, .count = s->obstacle_count};
 }
 
-typedef struct search {
-  const unit_cell *cell;
-  double tolerance, small;
-  gaps *found;
-} search;
+enum { PHRASE_BYTES = 96 };
 
-/* Ties within half the tolerance go to the first in time, then to the first particle. */
-static void find_smallest_gap(const search *s, const motion_piece *piece, size_t i) {
-  size_t site = piece->segment.first + i;
-  int is_free = unit_cell_role(s->cell, site) == RIC_ROLE_FREE;
-  located *best = is_free ? &s->found->free : &s->found->impact;
-  double c[RIC_POLY_DEGREE + 1], x, value, cutoff = best->value - s->tolerance / 2;
-  if (!is_free)
-    cutoff = fmin(cutoff, s->small);
-  int degree = gap_of(piece, s->cell, i, c);
-  if (ric_poly_minimum(c, degree, cutoff, s->tolerance / 2, &x, &value))
-    *best = (located){.value = value, .time = time_at(piece, x), .site = site};
+/* "particle 3". */
+static const char *owner(const obstacle_names *n, size_t obstacle, char *text) {
+  snprintf(text, PHRASE_BYTES, "%s %zu", n->noun ? n->noun : "obstacle",
+           n->obstacles ? n->obstacles[obstacle].coordinate : obstacle);
+  return text;
 }
 
-static void search_piece(const motion_piece *piece, void *user) {
-  const search *s = user;
-  double lower[LATTICE_SERIES_BLOCK];
-  ric_segment_bounds(&piece->segment, lower, NULL);
-  for (size_t i = 0; i < piece->segment.coordinates; i++) {
-    size_t site = piece->segment.first + i;
-    double gap = lower[i] - ric_chain_floor(&s->cell->chain, site); /* infinite without a floor */
-    double interesting =
-        unit_cell_role(s->cell, site) == RIC_ROLE_FREE ? s->found->free.value - s->tolerance / 2 : s->small;
-    if (gap <= interesting && gap < INFINITY)
-      find_smallest_gap(s, piece, i);
+/* Whether its coordinate has another one on the same side. */
+static bool is_ambiguous(const obstacle_names *n, size_t obstacle) {
+  for (size_t j = 0; n->obstacles && j < n->count; j++)
+    if (j != obstacle && n->obstacles[j].coordinate == n->obstacles[obstacle].coordinate &&
+        n->obstacles[j].side == n->obstacles[obstacle].side)
+      return true;
+  return false;
+}
+
+static bool is_wall(const obstacle_names *n, size_t obstacle) {
+  return n->obstacles && n->obstacles[obstacle].side < 0;
+}
+
+/* "particle 3 passes its wall". */
+static const char *phrase(const obstacle_names *n, size_t obstacle, const char *verb, char *text) {
+  char who[PHRASE_BYTES];
+  const char *side = is_wall(n, obstacle) ? "wall" : "floor";
+  if (!n->noun)
+    snprintf(text, PHRASE_BYTES, "the motion %s obstacle %zu", verb, obstacle);
+  else if (is_ambiguous(n, obstacle))
+    snprintf(text, PHRASE_BYTES, "%.40s %s its %s (obstacle %zu)", owner(n, obstacle, who), verb, side, obstacle);
+  else
+    snprintf(text, PHRASE_BYTES, "%.40s %s its %s", owner(n, obstacle, who), verb, side);
+  return text;
+}
+
+__attribute__((format(printf, 2, 3))) static void add(ric_orbit *o, const char *format, ...) {
+  size_t used = strlen(o->reason);
+  va_list list;
+  va_start(list, format);
+  vsnprintf(o->reason + used, sizeof o->reason - used, format, list);
+  va_end(list);
+}
+
+void verdict_write_mode(char *text, size_t bytes, size_t mode, double harmonic) {
+  snprintf(text, bytes, "mode %zu is at resonance (harmonic %.0f): the impulses vanish, the orbit is a linear mode",
+           mode, harmonic);
+}
+
+void verdict_write_grazing(char *text, size_t bytes, const obstacle_names *names, const gap_found *gap) {
+  char words[PHRASE_BYTES];
+  snprintf(text, bytes, "%s at t = %.6g (gap %.2g)", phrase(names, gap->obstacle, "touches", words), gap->time,
+           gap->value);
+}
+
+/* --- outcomes ----------------------------------------------------------------------------------------------------- */
+
+static double time_in_period(const ric_orbit *o, double time) {
+  double t = fmod(time, o->period);
+  return t < 0 ? t + o->period : t;
+}
+
+/* The impact that comes in slowest, SIZE_MAX without impacts. */
+static size_t weakest_impact(const ric_orbit *o) {
+  size_t weakest = o->impacts > 0 ? 0 : SIZE_MAX;
+  for (size_t k = 1; k < o->impacts; k++)
+    if (o->gap_rate[k] > o->gap_rate[weakest])
+      weakest = k;
+  return weakest;
+}
+
+/* The first impact whose impulse pulls. */
+static size_t first_pulling(const orbit_facts *f, const ric_orbit *o) {
+  size_t first = SIZE_MAX;
+  for (size_t k = 0; k < o->impacts; k++)
+    if (o->gap_rate[k] > f->slow && (first == SIZE_MAX || o->impact_time[k] < o->impact_time[first]))
+      first = k;
+  return first;
+}
+
+static void explain_pulling(const orbit_facts *f, ric_orbit *o, size_t k) {
+  char words[PHRASE_BYTES];
+  add(o, "%s at t = %.6g: gap rate %.3g before the impact, must be negative",
+      phrase(&f->names, o->impact_obstacle[k], "is pulled by", words), o->impact_time[k], o->gap_rate[k]);
+}
+
+static void explain_passing(const orbit_facts *f, ric_orbit *o) {
+  const gap_found *least = gap_watch_least(f->gaps), *first = &f->gaps->first;
+  char words[PHRASE_BYTES];
+  if (first->obstacle == NO_OBSTACLE)
+    first = least; /* below -zero by rounding alone */
+  double time = time_in_period(o, first->time);
+  const char *beyond = !f->names.noun ? "is beyond" : is_wall(&f->names, first->obstacle) ? "is above" : "is below";
+  add(o, "%s at t = %.6g", phrase(&f->names, first->obstacle, time > 0 ? "passes" : beyond, words), time);
+  if (least->value < 0 && !least->divided)
+    add(o, "; smallest gap %.6g, %s at t = %.6g", least->value, owner(&f->names, least->obstacle, words),
+        time_in_period(o, least->time));
+}
+
+static void explain_violation(const orbit_facts *f, ric_orbit *o) {
+  const gap_found *passed = &f->gaps->first;
+  size_t pulling = first_pulling(f, o);
+  if (f->out_of_order)
+    add(o, "impacts are out of order");
+  else if (pulling != SIZE_MAX &&
+           !(passed->obstacle != NO_OBSTACLE && time_in_period(o, passed->time) < o->impact_time[pulling]))
+    explain_pulling(f, o, pulling);
+  else
+    explain_passing(f, o);
+}
+
+void verdict_clearance(const orbit_facts *f, ric_orbit *o) {
+  const gap_found *g = &f->gaps->free;
+  bool any = g->obstacle != NO_OBSTACLE;
+  o->clearance = any ? g->value : NAN;
+  o->clearance_time = any ? time_in_period(o, g->time) : NAN;
+  o->clearance_particle =
+      any ? (long long)(f->names.obstacles ? f->names.obstacles[g->obstacle].coordinate : g->obstacle) : -1;
+}
+
+static bool is_violated(const orbit_facts *f, const ric_orbit *o) {
+  return f->out_of_order || first_pulling(f, o) != SIZE_MAX || gap_watch_least(f->gaps)->value < -f->gaps->zero;
+}
+
+void verdict_find(const orbit_facts *f, ric_orbit *o) {
+  size_t weakest = weakest_impact(o);
+  gap_found least = *gap_watch_least(f->gaps);
+  char words[PHRASE_BYTES];
+  o->outcome = RIC_ADMISSIBLE;
+  o->reason[0] = '\0';
+  if (is_violated(f, o)) {
+    o->outcome = RIC_INADMISSIBLE;
+    explain_violation(f, o);
+  } else if (weakest != SIZE_MAX && o->gap_rate[weakest] >= -f->slow) {
+    o->outcome = RIC_GRAZING;
+    add(o, "%s at t = %.6g with the gap rate %.2g", phrase(&f->names, o->impact_obstacle[weakest], "hits", words),
+        o->impact_time[weakest], o->gap_rate[weakest]);
+  } else if (least.value <= f->gaps->zero) {
+    o->outcome = RIC_GRAZING;
+    least.time = time_in_period(o, least.time);
+    verdict_write_grazing(o->reason, sizeof o->reason, &f->names, &least);
   }
 }
 
-/** Finds the smallest gaps.
- *  @param tolerance  absolute, on the smallest free gap
- *  @param small  gaps of impacting sites above it are of no interest
- *  @param mismatch  as motion_run */
-static ric_status gaps_find(motion *m, const unit_cell *cell, double period, const boundary_state *state,
-                            double tolerance, double small, gaps *found, double *mismatch, ric_poll poll,
+void verdict_add_violation(const orbit_facts *f, ric_orbit *o) {
+  if (!is_violated(f, o))
+    return;
+  add(o, "; inadmissible, ");
+  explain_violation(f, o);
+}
+
+void verdict_violated(ric_orbit *o, double residual, double allowed) {
+  o->outcome = RIC_FAILED;
+  snprintf(o->reason, sizeof o->reason, "equations are violated by %.3g, allowed %.3g", residual, allowed);
+}
+
+void verdict_resonant(ric_orbit *o, bool carried, size_t mode, unsigned harmonic) {
+  o->outcome = carried ? RIC_GRAZING : RIC_RESONANT;
+  o->mode = (long long)mode;
+  o->harmonic = harmonic;
+  if (carried)
+    verdict_write_mode(o->reason, sizeof o->reason, mode, harmonic);
+  else
+    snprintf(o->reason, sizeof o->reason,
+             "mode %zu is at resonance (harmonic %u) and vanishes at the contacts: its amplitude is free", mode,
+             harmonic);
+}
+
+void verdict_without_state(ric_orbit *o, ric_outcome outcome) {
+  o->outcome = outcome;
+  for (size_t i = 0; i < 2 * (o->particles + o->speeds) + 3 * o->impacts; i++)
+    o->q[i] = NAN; /* the one block behind all arrays of numbers */
+  o->energy = o->residual = o->clearance = o->clearance_time = NAN;
+  o->clearance_particle = -1;
+}
+
+void ric_orbit_fail(ric_orbit *o, const char *reason) {
+  verdict_without_state(o, RIC_FAILED);
+  o->condition = NAN;
+  o->mode = -1;
+  o->harmonic = 0;
+  snprintf(o->reason, sizeof o->reason, "%s", reason);
+}
+
+/* --- orbits of chains: gaps --------------------------------------------------------------------------------------- */
+
+typedef struct gap_search {
+  const unit_cell *cell;
+  gap_watch *watch;
+} gap_search;
+
+/* At the site's own contact the gap is zero at x = 0. */
+static void watch_site(const gap_search *s, const motion_piece *piece, size_t i, ric_role role) {
+  const ric_segment *segment = &piece->segment;
+  double c[RIC_POLY_DEGREE + 1];
+  size_t site = segment->first + i;
+  bool divided = piece->at_contact && role == (piece->from_half ? RIC_ROLE_HALF : RIC_ROLE_START);
+  ric_segment_gap(segment, i, ric_chain_floor(&s->cell->chain, site), c);
+  gap_watch_value(s->watch, &(gap_piece){.c = c + divided,
+                                         .degree = segment->degree - divided,
+                                         .start = segment->start,
+                                         .length = segment->length,
+                                         .to = 1,
+                                         .obstacle = site,
+                                         .hit = role != RIC_ROLE_FREE,
+                                         .divided = divided});
+}
+
+static void watch_piece(const motion_piece *piece, void *user) {
+  const gap_search *s = user;
+  const ric_segment *segment = &piece->segment;
+  double lower[LATTICE_SERIES_BLOCK], from = segment->start + (piece->from_half ? segment->length : 0);
+  ric_segment_bounds(segment, lower, NULL);
+  for (size_t i = 0; i < segment->coordinates; i++) {
+    size_t site = segment->first + i;
+    double bound = lower[i] - ric_chain_floor(&s->cell->chain, site); /* infinite without a floor */
+    ric_role role = unit_cell_role(s->cell, site);
+    if (bound < INFINITY && gap_watch_cares(s->watch, role != RIC_ROLE_FREE, bound, from))
+      watch_site(s, piece, i, role);
+  }
+}
+
+/* From sites of the cell to particles of the chain. */
+static void name_particle(const unit_cell *cell, gap_found *found) {
+  if (found->obstacle != NO_OBSTACLE)
+    found->obstacle = unit_cell_particle(cell, found->obstacle);
+}
+
+/* @param zero  gaps below it count as zero; larger ones of sites that are hit are of no interest */
+static ric_status find_gaps(motion *m, const unit_cell *cell, const boundary_state *state, double tolerance,
+                            double zero, double period, gap_watch *watch, double *mismatch, ric_poll poll,
                             ric_error *error) {
-  search s = {.cell = cell, .tolerance = tolerance, .small = small, .found = found};
-  found->free = found->impact = (located){.value = INFINITY, .time = NAN, .site = SIZE_MAX};
-  return motion_run(m, &cell->chain, period, state, search_piece, &s, mismatch, poll, error);
+  gap_search s = {.cell = cell, .watch = watch};
+  gap_watch_begin(watch, tolerance, zero, zero);
+  RIC_TRY(motion_run(m, &cell->chain, period, state, watch_piece, &s, mismatch, poll, error));
+  name_particle(cell, &watch->free);
+  name_particle(cell, &watch->own);
+  name_particle(cell, &watch->first);
+  return RIC_OK;
 }
 
-typedef struct violation {
-  const unit_cell *cell;
-  double tolerance;
-  located *first;
-} violation;
-
-static void violation_in_piece(const motion_piece *piece, void *user) {
-  const violation *s = user;
-  for (size_t i = 0; i < piece->segment.coordinates; i++) {
-    size_t site = piece->segment.first + i;
-    if (ric_chain_floor(&s->cell->chain, site) == -INFINITY)
-      continue;
-    double c[RIC_POLY_DEGREE + 1], r[RIC_POLY_DEGREE + 1], x;
-    int degree = gap_of(piece, s->cell, i, c);
-    c[0] += s->tolerance;
-    if (ric_poly_lower_bound(c, degree) > 0)
-      continue;
-    if (piece->from_half) /* the segment runs back in time: first in time is last in x */
-      ric_poly_reflect(c, degree, r);
-    if (!ric_poly_first_root(piece->from_half ? r : c, degree, &x))
-      continue;
-    double time = time_at(piece, piece->from_half ? 1 - x : x);
-    if (time < s->first->time)
-      *s->first = (located){.value = 0, .time = time, .site = site};
-  }
-}
-
-/** First time in [0, T/2] at which any gap falls below -tolerance; site SIZE_MAX if none does. */
-static ric_status gaps_first_violation(motion *m, const unit_cell *cell, double period, const boundary_state *state,
-                                       double tolerance, located *first, ric_poll poll, ric_error *error) {
-  violation s = {.cell = cell, .tolerance = tolerance, .first = first};
-  *first = (located){.value = NAN, .time = INFINITY, .site = SIZE_MAX};
-  return motion_run(m, &cell->chain, period, state, violation_in_piece, &s, NULL, poll, error);
-}
-
-/* Modes of a chain at resonance with a period, and whether the contacts of a pattern see them. */
+/* --- modes of a chain at resonance with the period, and whether the contacts of a pattern see them ---------------- */
 
 /* Wave index (a real number) at which the image ring has a frequency, clamped to the band. */
 static double wave_index(const ric_chain *chain, double frequency) {
@@ -214,15 +380,7 @@ static size_t resonant_dominant(const ric_chain *chain, const border_mode *modes
   return dominant;
 }
 
-/* What the judgement looks at. */
-typedef struct facts {
-  const unit_cell *cell;
-  const ric_pattern *pattern;
-  const ric_orbit_options *options;
-  double scale; /* largest displacement */
-  double zero;  /* gaps and impulses below it count as zero */
-  gaps gaps;
-} facts;
+/* --- the verdict on orbits of chains ------------------------------------------------------------------------------ */
 
 /* Velocities over the largest frequency stand for what is reached between the impacts. */
 static double largest_displacement(const boundary_state *state, const ric_chain *chain) {
@@ -245,186 +403,72 @@ static double largest_contact_error(const unit_cell *cell, const boundary_state 
   return largest;
 }
 
-/* The impact with the smallest impulse. */
-static size_t weakest_impact(const ric_orbit *orbit) {
-  size_t weakest = 0;
-  for (size_t r = 1; r < orbit->impacts; r++)
-    if (orbit->impulse[r] < orbit->impulse[weakest])
-      weakest = r;
-  return weakest;
-}
-
 /* What the resonant modes do: they carry the orbit without impulses, or an amplitude is free, or neither. */
 static ric_status judge_modes(const unit_cell *whole, const border_mode *modes, size_t count, ric_orbit *orbit,
-                              size_t *which, bool *decided, ric_error *error) {
-  RIC_TRY(resonant_carries(whole, modes, count, decided, error));
-  if (*decided) {
-    *which = resonant_dominant(&whole->chain, modes, count, orbit->q);
-    orbit->outcome = RIC_GRAZING;
-    snprintf(orbit->reason, sizeof orbit->reason,
-             "mode %zu is at resonance (harmonic %u): the impulses vanish, the orbit is a linear mode",
-             modes[*which].mode, modes[*which].harmonic);
-    return RIC_OK;
-  }
-  RIC_TRY(resonant_free(whole, modes, count, decided, which, error));
-  if (*decided) {
-    orbit->outcome = RIC_RESONANT;
-    snprintf(orbit->reason, sizeof orbit->reason,
-             "mode %zu is at resonance (harmonic %u) and vanishes at the contacts: its amplitude is free",
-             modes[*which].mode, modes[*which].harmonic);
-  }
+                              bool *decided, ric_error *error) {
+  size_t which = 0;
+  bool carried;
+  RIC_TRY(resonant_carries(whole, modes, count, &carried, error));
+  if (carried)
+    which = resonant_dominant(&whole->chain, modes, count, orbit->q);
+  else
+    RIC_TRY(resonant_free(whole, modes, count, decided, &which, error));
+  *decided = *decided || carried;
+  if (*decided)
+    verdict_resonant(orbit, carried, modes[which].mode, modes[which].harmonic);
   return RIC_OK;
 }
 
 /* Resonances are those of the whole chain: its cell does not know all modes. */
-static ric_status judge_resonances(const facts *f, const ric_chain *chain, ric_orbit *orbit, bool *decided,
-                                   ric_error *error) {
+static ric_status judge_resonances(const ric_chain *chain, const ric_pattern *pattern, double tolerance,
+                                   ric_orbit *orbit, bool *decided, ric_error *error) {
   border_mode modes[BORDER_MODES];
-  size_t count = resonant_modes(chain, orbit->period, f->options->resonance_tol, modes), which = 0;
+  size_t count = resonant_modes(chain, orbit->period, tolerance, modes);
   *decided = false;
   if (count == 0)
     return RIC_OK;
   unit_cell whole = {0};
-  ric_status status = unit_cell_whole(&whole, chain, f->pattern, error);
+  ric_status status = unit_cell_whole(&whole, chain, pattern, error);
   if (status == RIC_OK)
-    status = judge_modes(&whole, modes, count, orbit, &which, decided, error);
+    status = judge_modes(&whole, modes, count, orbit, decided, error);
   unit_cell_clear(&whole);
-  if (status == RIC_OK && *decided) {
-    orbit->mode = (long long)modes[which].mode;
-    orbit->harmonic = modes[which].harmonic;
-  }
   return status;
-}
-
-/* Which condition fails first in [0, T/2]: an impulse at 0, a gap, an impulse at T/2. */
-static ric_status explain_violation(motion *m, const facts *f, const boundary_state *state, ric_orbit *orbit,
-                                    ric_error *error) {
-  for (size_t r = 0; r < orbit->impacts; r++) {
-    size_t particle = ric_pattern_impact(f->pattern, r);
-    if (ric_pattern_role(f->pattern, particle) == RIC_ROLE_START && orbit->impulse[r] < -f->zero) {
-      snprintf(orbit->reason, sizeof orbit->reason, "impulse of particle %zu at t = 0 is %.6g, must be positive",
-               particle, orbit->impulse[r]);
-      return RIC_OK;
-    }
-  }
-  located first;
-  RIC_TRY(gaps_first_violation(m, f->cell, orbit->period, state, f->zero, &first, f->options->poll, error));
-  if (first.site == SIZE_MAX) { /* then an impulse at T/2 alone has the wrong sign */
-    size_t weakest = weakest_impact(orbit);
-    snprintf(orbit->reason, sizeof orbit->reason, "impulse of particle %zu at t = T/2 is %.6g, must be positive",
-             ric_pattern_impact(f->pattern, weakest), orbit->impulse[weakest]);
-    return RIC_OK;
-  }
-  const located *deepest = unit_cell_role(f->cell, first.site) == RIC_ROLE_FREE ? &f->gaps.free : &f->gaps.impact;
-  int used = snprintf(orbit->reason, sizeof orbit->reason, "particle %zu %s its floor at t = %.6g",
-                      unit_cell_particle(f->cell, first.site), first.time > 0 ? "passes" : "is below", first.time);
-  if (deepest->value < 0 && deepest == &f->gaps.free)
-    snprintf(orbit->reason + used, sizeof orbit->reason - (size_t)used, "; smallest gap %.6g, particle %zu at t = %.6g",
-             deepest->value, unit_cell_particle(f->cell, deepest->site), deepest->time);
-  return RIC_OK;
-}
-
-static void explain_grazing(const facts *f, ric_orbit *orbit) {
-  const located *touch = f->gaps.free.value <= f->zero ? &f->gaps.free : &f->gaps.impact;
-  if (touch->value <= f->zero) {
-    snprintf(orbit->reason, sizeof orbit->reason, "particle %zu touches its floor at t = %.6g (gap %.2g)",
-             unit_cell_particle(f->cell, touch->site), touch->time, touch->value);
-    return;
-  }
-  size_t weakest = weakest_impact(orbit);
-  snprintf(orbit->reason, sizeof orbit->reason, "impulse of particle %zu vanishes (%.2g)",
-           ric_pattern_impact(f->pattern, weakest), orbit->impulse[weakest]);
-}
-
-/* A linear mode, or one orbit of many, need not be admissible: says so. */
-static void mention_violation(const facts *f, ric_orbit *orbit) {
-  size_t used = strlen(orbit->reason);
-  const located *worst = f->gaps.free.value <= f->gaps.impact.value ? &f->gaps.free : &f->gaps.impact;
-  double weakest = orbit->impulse[weakest_impact(orbit)];
-  if (worst->value < -f->zero)
-    snprintf(orbit->reason + used, sizeof orbit->reason - used, "; inadmissible, gap %.3g of particle %zu",
-             worst->value, unit_cell_particle(f->cell, worst->site));
-  else if (weakest < -f->zero)
-    snprintf(orbit->reason + used, sizeof orbit->reason - used, "; inadmissible, impulse %.3g", weakest);
 }
 
 /* Says why the numbers are large where the contact matrix is nearly singular. */
 static void mention_condition(ric_orbit *orbit) {
-  size_t used = strlen(orbit->reason);
   if (orbit->condition > 1e3 && orbit->outcome == RIC_INADMISSIBLE)
-    snprintf(orbit->reason + used, sizeof orbit->reason - used, "; near a singular contact matrix, condition %.2g",
-             orbit->condition);
+    add(orbit, "; near a singular contact matrix, condition %.2g", orbit->condition);
 }
 
-static ric_status judge_admissibility(motion *m, const facts *f, const boundary_state *state, ric_orbit *orbit,
-                                      ric_error *error) {
-  double smallest = fmin(f->gaps.free.value, f->gaps.impact.value);
-  double weakest = orbit->impulse[weakest_impact(orbit)];
-  if (smallest < -f->zero || weakest < -f->zero) {
-    orbit->outcome = RIC_INADMISSIBLE;
-    RIC_TRY(explain_violation(m, f, state, orbit, error));
-    if (f->options->method == RIC_METHOD_IMPULSE)
-      mention_condition(orbit);
-  } else if (smallest <= f->zero || weakest <= f->zero) {
-    orbit->outcome = RIC_GRAZING;
-    explain_grazing(f, orbit);
-  } else {
-    orbit->outcome = RIC_ADMISSIBLE;
-    orbit->reason[0] = '\0';
-  }
-  return RIC_OK;
-}
-
-static void copy_clearance(const facts *f, ric_orbit *orbit) {
-  int any = f->gaps.free.site != SIZE_MAX;
-  orbit->clearance = any ? f->gaps.free.value : NAN;
-  orbit->clearance_time = any ? f->gaps.free.time : NAN;
-  orbit->clearance_particle = any ? (long long)unit_cell_particle(f->cell, f->gaps.free.site) : -1;
-}
-
-ric_status verdict_find(motion *m, const unit_cell *cell, const ric_chain *chain, const ric_pattern *pattern,
-                        const boundary_state *state, bool one_of_many, const ric_orbit_options *options,
-                        ric_orbit *orbit, ric_error *error) {
-  facts f = {.cell = cell, .pattern = pattern, .options = options};
-  double mismatch;
-  f.scale = largest_displacement(state, &cell->chain);
-  f.zero = options->grazing_tol * f.scale;
-  RIC_TRY(gaps_find(m, cell, orbit->period, state, options->clearance_tol * f.scale, f.zero, &f.gaps, &mismatch,
-                    options->poll, error));
-  orbit->residual = isnan(mismatch) ? NAN : fmax(mismatch, largest_contact_error(cell, state));
-  copy_clearance(&f, orbit);
-  if (!(orbit->residual <= options->residual_tol * f.scale)) {
-    orbit->outcome = RIC_FAILED;
-    snprintf(orbit->reason, sizeof orbit->reason, "equations violated by %.3g, allowed %.3g", orbit->residual,
-             options->residual_tol * f.scale);
+ric_status chain_verdict(ric_orbit_solver *s, const ric_chain *chain, const ric_pattern *pattern,
+                         const boundary_state *state, bool one_of_many, ric_orbit *orbit, ric_error *error) {
+  const ric_orbit_options *o = &s->options;
+  double mismatch, scale = largest_displacement(state, &s->cell.chain), zero = o->grazing_tol * scale;
+  gap_watch gaps;
+  const orbit_facts f = {.names = {.noun = "particle"}, .gaps = &gaps, .slow = zero / 2}; /* of impulses: zero */
+  RIC_TRY(find_gaps(&s->motion, &s->cell, state, o->clearance_tol * scale / 2, zero, orbit->period, &gaps, &mismatch,
+                    o->poll, error));
+  orbit->residual = isnan(mismatch) ? NAN : fmax(mismatch, largest_contact_error(&s->cell, state));
+  verdict_clearance(&f, orbit);
+  if (!(orbit->residual <= o->residual_tol * scale)) {
+    verdict_violated(orbit, orbit->residual, o->residual_tol * scale);
     return RIC_OK;
   }
   bool decided;
-  RIC_TRY(judge_resonances(&f, chain, orbit, &decided, error));
+  RIC_TRY(judge_resonances(chain, pattern, o->resonance_tol, orbit, &decided, error));
   if (!decided && one_of_many) {
     decided = true;
     orbit->outcome = RIC_RESONANT;
     snprintf(orbit->reason, sizeof orbit->reason,
              "equations are singular (condition %.3g) but solvable: the orbit is one of many", orbit->condition);
   }
-  if (!decided)
-    return judge_admissibility(m, &f, state, orbit, error);
-  mention_violation(&f, orbit);
+  if (decided) {
+    verdict_add_violation(&f, orbit);
+    return RIC_OK;
+  }
+  verdict_find(&f, orbit);
+  if (o->method == RIC_METHOD_IMPULSE)
+    mention_condition(orbit);
   return RIC_OK;
-}
-
-void verdict_without_state(ric_orbit *orbit, ric_outcome outcome) {
-  orbit->outcome = outcome;
-  for (size_t i = 0; i < 2 * (orbit->particles + orbit->speeds) + 3 * orbit->impacts; i++)
-    orbit->q[i] = NAN; /* the one block behind all arrays of numbers */
-  orbit->energy = orbit->residual = orbit->clearance = orbit->clearance_time = NAN;
-  orbit->clearance_particle = -1;
-}
-
-void ric_orbit_fail(ric_orbit *orbit, const char *reason) {
-  verdict_without_state(orbit, RIC_FAILED);
-  orbit->condition = NAN;
-  orbit->mode = -1;
-  orbit->harmonic = 0;
-  snprintf(orbit->reason, sizeof orbit->reason, "%s", reason);
 }

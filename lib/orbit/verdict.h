@@ -1,38 +1,48 @@
-/* What becomes of an orbit: its smallest gaps, modes at resonance, the outcome and its reason. Internal to the library.
- */
+/* The outcome of an orbit and its reason in words, however the orbit was found. Internal to the library. */
 #ifndef RICOCHET_VERDICT_H
 #define RICOCHET_VERDICT_H
 
-#include "motion.h"
+#include "impact/gap_watch.h"
 #include "ricochet/orbit.h"
-#include "unit_cell.h"
 
-/* Admissibility of an orbit, (9) of [JAP], certified on its segments.
- *
- * Every gap is a polynomial on a segment and its minimum is located by bounds (polynomial.h), so no violation is
- * missed. At a contact the gap starts at zero: there the polynomial divided by its known root is looked at. */
+/** What obstacles are called: "particle 3 passes its wall", "the motion passes obstacle 3". */
+typedef struct obstacle_names {
+  const char *noun;              /* of coordinates; NULL: obstacles have numbers only */
+  const ric_obstacle *obstacles; /* [count] at coordinates; NULL with a noun: floors, with the numbers of particles */
+  size_t count;
+} obstacle_names;
 
-/** A value with the place where it was found. */
-typedef struct located {
-  double value, time;
-  size_t site; /* SIZE_MAX: nowhere */
-} located;
+obstacle_names obstacle_names_of(const ric_system *system);
 
-typedef struct gaps {
-  located free; /* smallest gap of the free sites with a floor */
-  located
-      impact; /* smallest gap of the impacting sites away from their contact (divided by it near it), if it is small */
-} gaps;
+/** What the outcome follows from, besides the impacts of the orbit. */
+typedef struct orbit_facts {
+  obstacle_names names;
+  const gap_watch *gaps;
+  double slow; /* gap rates whose size is below it count as zero */
+  bool out_of_order;
+} orbit_facts;
 
-/* The outcome of a solved orbit and its reason in words. */
+/** Sets the clearance: the smallest gap of what the orbit does not hit. */
+void verdict_clearance(const orbit_facts *f, ric_orbit *orbit);
 
-/** Judges an orbit whose state, impulses and condition are set and whose outcome is not `singular`: finds the gaps, the
- *  residual, and the outcome with its reason.
- *  @param state  on the cell
- *  @param one_of_many  the equations were singular, and this is the smallest of their solutions */
-ric_status verdict_find(motion *m, const unit_cell *cell, const ric_chain *chain, const ric_pattern *pattern,
-                        const boundary_state *state, bool one_of_many, const ric_orbit_options *options,
-                        ric_orbit *orbit, ric_error *error);
+/** Sets the outcome of an orbit that satisfies its equations: `admissible`; `inadmissible`, with what is violated first
+ *  in the period; `grazing`, with what is zero.
+ *  @param orbit  its period and impacts are read */
+void verdict_find(const orbit_facts *f, ric_orbit *orbit);
+
+/** Adds to a reason what makes the orbit inadmissible, if anything does: for outcomes that leave that open. */
+void verdict_add_violation(const orbit_facts *f, ric_orbit *orbit);
+
+/** Makes it `failed`: a residual is larger than allowed. */
+void verdict_violated(ric_orbit *orbit, double residual, double allowed);
+
+/** Makes it `grazing`, a linear mode that reaches the obstacles without impulses, or `resonant`, a mode that vanishes
+ * at all contacts; sets the mode. */
+void verdict_resonant(ric_orbit *orbit, bool carried, size_t mode, unsigned harmonic);
+
+/** Text of the first kind of resonance, and of a gap that is zero. */
+void verdict_write_mode(char *text, size_t bytes, size_t mode, double harmonic);
+void verdict_write_grazing(char *text, size_t bytes, const obstacle_names *names, const gap_found *gap);
 
 /** Makes an orbit without a state: NaN everywhere, with this outcome. The reason is the caller's. */
 void verdict_without_state(ric_orbit *orbit, ric_outcome outcome);

@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <stdint.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -64,6 +65,16 @@ static void mirror(const sampling *p, size_t count) {
     }
 }
 
+/* States at the first time of the motion and every `step` after it, as far as it is run along. */
+static ric_status sample(ric_shooting *s, const double *z, double given, sampling *p, size_t count, ric_error *error) {
+  const shooting_observer observer = {.begins = begins, .segment = segment, .user = p};
+  for (size_t k = 0; k < count * s->arcs.coordinates; k++)
+    p->q[k] = NAN;
+  for (size_t k = 0; k < count * s->arcs.speeds; k++)
+    p->v[k] = NAN;
+  return shooting_evaluate(s, z, given, s->residual, NULL, NULL, &observer, error);
+}
+
 ric_status ric_shooting_states(ric_shooting *s, const double *z, double given, size_t count, double *q, double *v,
                                ric_error *error) {
   bool even = s->arcs.kind == RIC_MOTION_EVEN;
@@ -78,15 +89,65 @@ ric_status ric_shooting_states(ric_shooting *s, const double *z, double given, s
                 .count = even ? (count + 1) / 2 : count,
                 .q = q,
                 .v = v};
-  const shooting_observer observer = {.begins = begins, .segment = segment, .user = &p};
-  for (size_t k = 0; k < count * s->arcs.coordinates; k++)
-    q[k] = NAN;
-  for (size_t k = 0; k < count * s->arcs.speeds; k++)
-    v[k] = NAN;
-  RIC_TRY(shooting_evaluate(s, z, given, s->residual, NULL, NULL, &observer, error));
+  RIC_TRY(sample(s, z, given, &p, count, error));
   if (even)
     mirror(&p, count);
   return RIC_OK;
+}
+
+/* The verifier, from within the longest time between impacts on. */
+
+/* Part of that time: not its middle, where symmetric motions stop. */
+static const double part_of_longest = 0.25;
+
+/* Time from `from` to the next impact, 0 < it <= T. */
+static double until_impact(const ric_orbit *o, double from) {
+  double least = o->period;
+  for (size_t k = 0; k < o->impacts; k++) {
+    double late = fmod(o->impact_time[k] - from, o->period);
+    least = fmin(least, late <= 0 ? late + o->period : late);
+  }
+  return least;
+}
+
+static double time_between_impacts(const ric_orbit *o) {
+  double longest = o->impacts > 0 ? 0 : o->period, after = 0;
+  for (size_t k = 0; k < o->impacts; k++) {
+    double until = until_impact(o, o->impact_time[k]);
+    if (until > longest) {
+      longest = until;
+      after = o->impact_time[k];
+    }
+  }
+  return after + part_of_longest * longest;
+}
+
+/* @param states  [2][n + m] q at both times, v at both */
+static ric_status verify(ric_shooting *s, const double *z, double given, const ric_orbit *orbit, double *states,
+                         const ric_verify_options *options, ric_verification *verification, ric_error *error) {
+  size_t n = s->arcs.coordinates;
+  double period = orbit->period, first = shooting_begin(s, 0, z, period, WISH_STATE).begin;
+  double late = fmod(time_between_impacts(orbit) - first, period);
+  late += late < 0 ? period : 0;
+  if (shooting_is_even(s)) /* the second half is the first one backwards: nor are there impacts */
+    late = fmin(late, period - late);
+  sampling p = {.s = s, .step = late, .slack = end_tol * period, .count = 2, .q = states, .v = states + 2 * n};
+  RIC_TRY(sample(s, z, given, &p, 2, error));
+  return ric_verify(s->system, orbit, first + late, p.q + n, p.v + s->arcs.speeds, options, verification, error);
+}
+
+ric_status ric_shooting_verify(ric_shooting *s, const double *z, double given, const ric_orbit *orbit,
+                               const ric_verify_options *options, ric_verification *verification, ric_error *error) {
+  *verification = (ric_verification){.result = RIC_NOT_RUN, .closure_error = NAN};
+  if (orbit->outcome != RIC_ADMISSIBLE) {
+    snprintf(verification->reason, sizeof verification->reason, "the orbit is not admissible");
+    return RIC_OK;
+  }
+  double *states = malloc(2 * s->arcs.size * sizeof *states);
+  ric_status status = states ? verify(s, z, given, orbit, states, options, verification, error)
+                             : ric_fail(error, RIC_ENOMEM, "no memory for states of %zu numbers", s->arcs.size);
+  free(states);
+  return status;
 }
 
 /* Solving F(z) = 0 from afar. */
@@ -201,7 +262,7 @@ void ric_shooting_destroy(ric_shooting **shooting) {
   if (!shooting || !*shooting)
     return;
   ric_shooting *s = *shooting;
-  shooting_gaps_destroy(&s->gaps);
+  system_gaps_clear(&s->gaps);
   shooting_spectrum_destroy(&s->spectrum);
   tangent_jump_clear(&s->jump);
   impact_solver_clear(&s->law);

@@ -6,7 +6,7 @@
 
 #include "arcs.h"
 #include "floquet/multipliers.h"
-#include "impact/locate.h"
+#include "impact/gap_watch.h"
 #include "impact/saltation.h"
 
 /* The equations of shooting, for the files that share them. */
@@ -35,7 +35,7 @@ struct ric_shooting {
   double *phase_along;
   double *residual;                   /* [unknowns] of a solution that is looked at */
   double *block;                      /* behind all of them */
-  struct shooting_gaps *gaps;         /* NULL until an orbit is asked for */
+  system_gaps gaps;                   /* without a system until an orbit is asked for */
   struct shooting_spectrum *spectrum; /* NULL until multipliers are asked for */
 };
 
@@ -119,7 +119,7 @@ typedef enum shooting_parts { EXAMINE_ORBIT = 1, EXAMINE_SPECTRUM = 2 } shooting
 /** Evaluates the equations and looks at the motion by the same run.
  *  @param what  of shooting_parts, added up
  *  @param F, J, F_given  as ric_shooting_residual; F may be NULL
- *  @param orbit  with EXAMINE_ORBIT: impacts, state at T/2 and residual are set; s->gaps has the gaps
+ *  @param orbit  with EXAMINE_ORBIT: impacts, state at T/2 and residual are set; s->gaps.watch has the gaps
  *  @returns as ric_shooting_residual, RIC_ENOMEM. */
 ric_status shooting_examine(ric_shooting *s, const double *z, double given, int what, double *F, double *J,
                             double *F_given, ric_orbit *orbit, ric_error *error);
@@ -127,51 +127,6 @@ ric_status shooting_examine(ric_shooting *s, const double *z, double given, int 
 /** First state, period, energy and verdict of the orbit that shooting_examine has seen last.
  *  @param z  of the orbit, or what it was corrected to since: by less than what is seen of it is exact to */
 ric_status shooting_judge(ric_shooting *s, const double *z, double given, ric_orbit *orbit, ric_error *error);
-
-/* The smallest gaps of a motion that shooting has found.
- *
- * Gaps are polynomials on the segments of the arcs, their minima certified (polynomial.h). Of an obstacle that the
- * motion does not hit the smallest value counts; of one that it hits the smallest local minimum away from the impacts,
- * where the gap comes from and goes to zero. */
-
-/** A gap, where and when. */
-typedef struct gap_found {
-  double value; /* INFINITY: none */
-  double time;
-  size_t obstacle;
-} gap_found;
-
-typedef struct shooting_gaps {
-  ric_shooting *s; /* borrowed */
-  gap_reader reader;
-  bool *hit;             /* [obstacles] in the motion at all */
-  double *slope;         /* [obstacles] of the gap at the end of the last segment; NaN after an impact */
-  bool any_free;         /* obstacles that it does not hit */
-  double *lower, *upper; /* [n] bounds of coordinates */
-  double zero;           /* gaps below -zero are violations */
-  gap_found free, own;   /* smallest of obstacles that are not hit, and that are */
-  gap_found first;       /* the first gap below -zero, INFINITY */
-  const piece_run *run;
-  const char *trouble; /* why a gap could not be read; NULL */
-} shooting_gaps;
-
-ric_status shooting_gaps_create(ric_shooting *s, shooting_gaps **gaps, ric_error *error);
-void shooting_gaps_destroy(shooting_gaps **gaps);
-
-/** Begins a motion: nothing found yet. */
-void shooting_gaps_reset(shooting_gaps *g);
-
-/** For an observer of the motion. @param end  of the segment that counts */
-void shooting_gaps_begin(shooting_gaps *g, const piece_run *run);
-void shooting_gaps_segment(shooting_gaps *g, const ric_segment *piece, double end);
-
-/** At an end of the half period of an even motion, with the state s->x there: gaps of obstacles that it hits elsewhere
- *  are at an extremum. @param hit  which obstacle each coordinate hits there */
-ric_status shooting_gaps_turn(shooting_gaps *g, const size_t *hit, double time, ric_error *error);
-
-/** Where a motion closes with an impact: other gaps may turn around there.
- *  @param before, after  states [n + m] */
-void shooting_gaps_close(shooting_gaps *g, const piece_run *run, const double *before, const double *after);
 
 /* Multipliers of motions that shooting has found.
  *

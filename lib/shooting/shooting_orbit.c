@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "numeric/vector.h"
+#include "orbit/verdict.h"
 #include "shooting.h"
 
 /* A part of the period at which no harmonic of low order is zero. */
@@ -137,6 +138,14 @@ static bool is_even_motion(const examination *l) {
   return l->s->arcs.kind == RIC_MOTION_EVEN;
 }
 
+/* At an end of the half period. @param hit  which obstacle each coordinate hits there */
+static ric_status turn_gaps(ric_shooting *s, const size_t *hit, double time, ric_error *error) {
+  size_t n = s->arcs.coordinates;
+  RIC_TRY(ric_system_rate(s->system, time, s->x, s->x + n, s->rates, s->rates + n, error));
+  system_gaps_turn(&s->gaps, hit, time, s->x, s->rates);
+  return RIC_OK;
+}
+
 /* Impacts at the first state of even motions. */
 static ric_status begin_orbit(examination *l, const piece_run *run, ric_error *error) {
   const ric_shooting *s = l->s;
@@ -146,7 +155,7 @@ static ric_status begin_orbit(examination *l, const piece_run *run, ric_error *e
   for (size_t i = 0; i < s->arcs.coordinates; i++)
     if (s->arcs.at_start[i] != NO_UNKNOWN)
       add_impact(l, s->arcs.at_start[i], 0, s->x, -1);
-  return shooting_gaps_turn(s->gaps, s->arcs.at_start, 0, error);
+  return turn_gaps(l->s, s->arcs.at_start, 0, error);
 }
 
 static ric_status begins(const piece_run *run, void *user, ric_error *error) {
@@ -157,7 +166,8 @@ static ric_status begins(const piece_run *run, void *user, ric_error *error) {
     RIC_TRY(shooting_spectrum_begin(s, error));
   if (!l->orbit)
     return RIC_OK;
-  shooting_gaps_begin(s->gaps, run);
+  if (!first && (run->piece - 1)->how == PIECE_IMPACT)
+    system_gaps_after(&s->gaps, (run->piece - 1)->obstacle);
   if (run->end < run->begin - s->grazing_tol * l->period) /* impacts of one time are in order either way */
     s->out_of_order = true;
   return first ? begin_orbit(l, run, error) : RIC_OK;
@@ -176,7 +186,7 @@ static void keep_half(examination *l, const ric_segment *piece, double end) {
 
 static void see_half_period(const ric_segment *piece, double end, void *user) {
   examination *l = user;
-  shooting_gaps_segment(l->s->gaps, piece, end);
+  system_gaps_segment(&l->s->gaps, piece, end);
   if (!is_even_motion(l))
     keep_half(l, piece, end);
 }
@@ -190,7 +200,7 @@ static ric_status end_half(examination *l, const piece_run *run, ric_error *erro
   for (size_t i = 0; i < n; i++)
     if (s->arcs.at_half[i] != NO_UNKNOWN)
       add_impact(l, s->arcs.at_half[i], run->end, s->x, 1);
-  return shooting_gaps_turn(s->gaps, s->arcs.at_half, run->end, error);
+  return turn_gaps(l->s, s->arcs.at_half, run->end, error);
 }
 
 static ric_status ends(const piece_run *run, void *user, ric_error *error) {
@@ -203,7 +213,7 @@ static ric_status ends(const piece_run *run, void *user, ric_error *error) {
   if (run->piece->how == PIECE_IMPACT)
     add_impact(l, run->piece->obstacle, run->end, s->x, 1);
   if (run->piece->how == PIECE_IMPACT && run->piece->closes)
-    shooting_gaps_close(s->gaps, run, s->x, l->z);
+    system_gaps_close(&l->s->gaps, run->piece->obstacle, run->end, s->x, l->z);
   return run->piece->how == PIECE_HALF ? end_half(l, run, error) : RIC_OK;
 }
 
@@ -228,20 +238,42 @@ static ric_status check_room(const ric_shooting *s, const ric_orbit *orbit, ric_
                   orbit->particles, orbit->impacts, s->arcs.coordinates, ric_shooting_impacts(s));
 }
 
+/* Which obstacles the motion hits is known from the beginning. */
+static ric_status reserve_gaps(ric_shooting *s, ric_error *error) {
+  const arc_plan *a = &s->arcs;
+  system_gaps *g = &s->gaps;
+  if (g->system)
+    return RIC_OK;
+  ric_status status = system_gaps_init(g, arc_runner_flow(&s->runner), error);
+  if (status != RIC_OK) {
+    system_gaps_clear(g);
+    return status;
+  }
+  for (size_t k = 0; k < a->sequence_count; k++)
+    g->hit[a->sequence[k]] = true;
+  for (size_t i = 0; a->kind == RIC_MOTION_EVEN && i < a->coordinates; i++) {
+    if (a->at_start[i] != NO_UNKNOWN)
+      g->hit[a->at_start[i]] = true;
+    if (a->at_half[i] != NO_UNKNOWN)
+      g->hit[a->at_half[i]] = true;
+  }
+  return RIC_OK;
+}
+
 static ric_status reserve(examination *l, ric_error *error) {
   ric_shooting *s = l->s;
   if (l->orbit)
     RIC_TRY(check_room(s, l->orbit, error));
-  if (l->orbit && !s->gaps)
-    RIC_TRY(shooting_gaps_create(s, &s->gaps, error));
+  if (l->orbit)
+    RIC_TRY(reserve_gaps(s, error));
   return l->spectrum ? shooting_spectrum_reserve(s, error) : RIC_OK;
 }
 
 static ric_status finish_orbit(examination *l, const double *F, ric_error *error) {
   const ric_shooting *s = l->s;
   ric_orbit *o = l->orbit;
-  if (s->gaps->trouble)
-    return ric_fail(error, RIC_ECALLBACK, "a gap of the motion could not be read: %s", s->gaps->trouble);
+  if (s->gaps.trouble)
+    return ric_fail(error, RIC_ECALLBACK, "a gap of the motion could not be read: %s", s->gaps.trouble);
   add_mirrored(l);
   o->residual = largest(F, s->arcs.unknowns);
   return RIC_OK;
@@ -257,7 +289,7 @@ ric_status shooting_examine(ric_shooting *s, const double *z, double given, int 
   RIC_TRY(shooting_period(s, z, given, &l.period, error));
   if (l.orbit) {
     s->out_of_order = false;
-    shooting_gaps_reset(s->gaps);
+    system_gaps_begin(&s->gaps, s->grazing_tol);
   }
   RIC_TRY(shooting_evaluate(s, z, given, residual, J, F_given, &observer, error));
   return l.orbit ? finish_orbit(&l, residual, error) : RIC_OK;
@@ -267,62 +299,6 @@ ric_status shooting_examine(ric_shooting *s, const double *z, double given, int 
 
 /* Residuals above it, relative to 1 + the largest unknown, are no solution's. */
 static const double residual_tol = 1e-6;
-
-/* The impact that comes in slowest. */
-static size_t weakest_impact(const ric_orbit *o) {
-  size_t weakest = 0;
-  for (size_t k = 1; k < o->impacts; k++)
-    if (o->gap_rate[k] > o->gap_rate[weakest])
-      weakest = k;
-  return weakest;
-}
-
-static double time_on_orbit(const ric_orbit *o, double time) {
-  double t = fmod(time, o->period);
-  return t < 0 ? t + o->period : t;
-}
-
-static void give_verdict(const ric_shooting *s, ric_orbit *o) {
-  const shooting_gaps *g = s->gaps;
-  double zero = s->grazing_tol;
-  const gap_found *least = g->free.value <= g->own.value ? &g->free : &g->own;
-  size_t weakest = weakest_impact(o);
-  double rate = o->impacts > 0 ? o->gap_rate[weakest] : -INFINITY;
-  char *reason = o->reason;
-  size_t room = sizeof o->reason;
-  o->outcome = RIC_INADMISSIBLE;
-  if (s->out_of_order)
-    snprintf(reason, room, "impacts are out of order");
-  else if (rate > zero)
-    snprintf(reason, room, "obstacle %zu is left at its impact, t = %.6g, with the gap rate %.3g",
-             o->impact_obstacle[weakest], o->impact_time[weakest], rate);
-  else if (least->value < -zero)
-    snprintf(reason, room, "obstacle %zu is passed at t = %.6g; the smallest gap is %.3g", g->first.obstacle,
-             time_on_orbit(o, g->first.time), least->value);
-  else
-    o->outcome = RIC_GRAZING;
-  if (o->outcome == RIC_INADMISSIBLE)
-    return;
-  if (rate >= -zero)
-    snprintf(reason, room, "obstacle %zu is hit at t = %.6g with the gap rate %.2g", o->impact_obstacle[weakest],
-             o->impact_time[weakest], rate);
-  else if (least->value <= zero)
-    snprintf(reason, room, "obstacle %zu is touched at t = %.6g, gap %.2g", least->obstacle,
-             time_on_orbit(o, least->time), least->value);
-  else {
-    o->outcome = RIC_ADMISSIBLE;
-    reason[0] = '\0';
-  }
-}
-
-static void keep_clearance(const ric_shooting *s, ric_orbit *o) {
-  const gap_found *g = &s->gaps->free;
-  bool any = g->obstacle != NO_UNKNOWN;
-  const ric_obstacle *obstacles = s->system->obstacles;
-  o->clearance = any ? g->value : NAN;
-  o->clearance_time = any ? time_on_orbit(o, g->time) : NAN;
-  o->clearance_particle = any ? (long long)(obstacles ? obstacles[g->obstacle].coordinate : g->obstacle) : -1;
-}
 
 /* Solutions of the equations that are no motions. */
 static ric_status look_for_failure(ric_shooting *s, const double *z, ric_orbit *o, ric_error *error) {
@@ -337,7 +313,7 @@ static ric_status look_for_failure(ric_shooting *s, const double *z, ric_orbit *
   if (why)
     snprintf(o->reason, sizeof o->reason, "no motion of this kind: %s", why);
   else if (!(o->residual <= most))
-    snprintf(o->reason, sizeof o->reason, "equations are violated by %.3g", o->residual);
+    verdict_violated(o, o->residual, most);
   else
     snprintf(o->reason, sizeof o->reason, "energy is not conserved: the motion closes but for %.3g", added);
   return RIC_OK;
@@ -359,8 +335,12 @@ ric_status shooting_judge(ric_shooting *s, const double *z, double given, ric_or
   o->condition = NAN;
   o->mode = -1;
   o->harmonic = 0;
-  keep_clearance(s, o);
-  give_verdict(s, o);
+  const orbit_facts f = {.names = obstacle_names_of(s->system),
+                         .gaps = &s->gaps.watch,
+                         .slow = s->grazing_tol,
+                         .out_of_order = s->out_of_order};
+  verdict_clearance(&f, o);
+  verdict_find(&f, o);
   return look_for_failure(s, z, o, error);
 }
 

@@ -307,7 +307,7 @@ def test_restarts_that_cannot_be_are_refused(ricochet, folder):
         (["restart.file=r.yaml"], program.FILES, "r.yaml: "),
         (["restart.file=o.h5"], program.FILES, "o.h5: ", "not a result of kind branch"),
         (["branch.high=0.05"], USAGE, "--set branch.high=0.05: branch.high = 0.05 leaves out the start"),
-        (["model.particles=2"], USAGE, "--set start={q: ", "start.q has 1 elements, expected 2"),
+        (["model.particles=2"], USAGE, "restart from s.h5: ", "start.q has 1 elements, expected 2"),
     ]
     for sets, code, place, *phrases in cases:
         words = [word for one in sets for word in ("--set", one)]

@@ -162,22 +162,23 @@ static void even_guesses_of_nonlinear_lattices_are_motions(void **state) {
   const ric_lattice lattice = nonlinear_ring();
   const ric_shooting_problem motion = even(&ring_hit, 1, NULL, 0);
   const ric_guess_problem problem = {&lattice, floors, RING, &motion};
-  const ric_promise promise = {.time = ring_period, .obstacle = ring_hit};
   ric_guess guess = guess_for(RING);
   ric_verification verification;
   ric_system *system = NULL;
   ric_error error;
-  double q[5 * RING], v[5 * RING];
+  ric_orbit orbit;
   put_floors(floors, RING);
   check(ric_guess_even(&problem, ring_period, &guess, &error), &error);
   check(ric_system_create_lattice(&lattice, floors, RING, &system, &error), &error);
   shot s = shot_at(system, &motion);
   shot_guess(&s, guess.q, guess.v, NULL, ring_period);
-  check(ric_shooting_states(s.shooting, s.z, ring_period, 5, q, v, &error), &error);
-  check(ric_verify(system, ring_period / 4, q + RING, v + RING, ring_period, &promise, 1, NULL, &verification, &error),
-        &error);
+  check(ric_orbit_init_for(&orbit, system, 1, &error), &error);
+  check(ric_shooting_orbit(s.shooting, s.z, ring_period, &orbit, &error), &error);
+  assert_int_equal(orbit.outcome, RIC_ADMISSIBLE);
+  check(ric_shooting_verify(s.shooting, s.z, ring_period, &orbit, NULL, &verification, &error), &error);
   if (verification.result != RIC_VERIFIED)
     fail_msg("%s", verification.reason);
+  ric_orbit_clear(&orbit);
   ric_guess_clear(&guess);
   shot_clear(&s);
 }

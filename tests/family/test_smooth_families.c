@@ -375,7 +375,11 @@ static void compare_hertz(const char *name) {
     verify.motion.flow.tolerance = 1e-13;
     m.put(&m, x[3]);
     check(ric_system_set_lattice(m.system, &m.lattice, &error), &error);
-    check(ric_verify(m.system, 0, z, u, period, NULL, 0, &verify, &v, &error), &error);
+    ric_orbit free_motion;
+    check(ric_orbit_init_for(&free_motion, m.system, 0, &error), &error);
+    free_motion.period = period;
+    check(ric_verify(m.system, &free_motion, 0, z, u, &verify, &v, &error), &error);
+    ric_orbit_clear(&free_motion);
     assert_int_equal(v.result, RIC_VERIFIED);
     closure = fmax(closure, v.closure_error);
     ric_family_destroy(&family);

@@ -153,7 +153,7 @@ static void orbits_that_do_not_reach_the_obstacle_are_failed(void **state) {
   impact_study s = impact_study_two_masses();
   impact_study_solve(&s, 1e-320);
   assert_int_equal(s.orbit.outcome, RIC_FAILED);
-  assert_non_null(strstr(s.orbit.reason, "keeps coordinate 1 away from obstacle 0, by 2"));
+  assert_non_null(strstr(s.orbit.reason, "equations are violated by 2,"));
   impact_study_clear(&s);
 }
 

@@ -7,7 +7,7 @@
 static ric_verification verify(const solved *x, const ric_verify_options *options) {
   ric_verification v;
   ric_error error = {0};
-  if (ric_orbit_verify(x->solver, &x->scenario.chain, x->scenario.pattern, &x->orbit, options, &v, &error) != RIC_OK)
+  if (ric_orbit_verify(x->solver, &x->scenario.chain, &x->orbit, options, &v, &error) != RIC_OK)
     fail_msg("%s", error.message);
   return v;
 }
@@ -88,31 +88,62 @@ static void inadmissible_orbits_are_not_run(void **state) {
   solved_clear(&x);
 }
 
-/* A single mass bouncing on a floor at -0.5, with promises that are kept or not. */
-static ric_verification of_promises(const ric_promise *promises, size_t count, double period) {
+/* A single mass bouncing on a floor at -0.5 from q = 1 on, against predicted impacts. */
+static ric_verification of_impacts(const double *times, size_t count, double period) {
   ric_lattice mass = ric_lattice_default(1, RIC_ENDS_FREE);
   ric_obstacle floor = ric_obstacle_floor(0, -0.5);
   ric_system *system = lattice_system(&mass, &floor, 1);
+  ric_orbit orbit;
   ric_verification v;
-  assert_int_equal(ric_verify(system, 0, (double[]){1}, (double[]){0}, period, promises, count, NULL, &v, NULL),
-                   RIC_OK);
+  assert_int_equal(ric_orbit_init_for(&orbit, system, count, NULL), RIC_OK);
+  orbit.period = period;
+  for (size_t k = 0; k < count; k++)
+    orbit.impact_time[k] = times[k];
+  assert_int_equal(ric_verify(system, &orbit, 0, (double[]){1}, (double[]){0}, NULL, &v, NULL), RIC_OK);
+  ric_orbit_clear(&orbit);
   ric_system_destroy(&system);
   return v;
 }
 
-static void promises_are_kept_missed_or_exceeded(void **state) {
+static void predicted_impacts_happen_or_are_missed_or_exceeded(void **state) {
   (void)state;
-  double hit = 2 * 3.14159265358979323846 / 3, period = 2 * hit; /* cos t = -0.5 */
-  ric_promise kept = {.time = hit, .obstacle = 0}, late = {.time = hit + 0.01, .obstacle = 0};
-  assert_int_equal(of_promises(&kept, 1, period).result, RIC_VERIFIED);
-  assert_int_equal(of_promises(NULL, 0, period).result, RIC_IMPACT_EXTRA);
-  assert_int_equal(of_promises(&late, 1, period).result, RIC_IMPACT_EXTRA);
-  ric_promise both[2] = {kept, {.time = hit + 0.5, .obstacle = 0}};
-  ric_verification v = of_promises(both, 2, period);
+  const double hit = 2 * 3.14159265358979323846 / 3, period = 2 * hit; /* cos t = -0.5 */
+  const double late = hit + 0.01, both[2] = {hit, hit + 0.5};
+  assert_int_equal(of_impacts(&hit, 1, period).result, RIC_VERIFIED);
+  assert_int_equal(of_impacts(NULL, 0, period).result, RIC_IMPACT_EXTRA);
+  assert_int_equal(of_impacts(&late, 1, period).result, RIC_IMPACT_EXTRA);
+  ric_verification v = of_impacts(both, 2, period);
   assert_int_equal(v.result, RIC_IMPACT_MISSING);
   assert_non_null(strstr(v.reason, "obstacle 0 is not hit at t = 2.594"));
-  v = of_promises(&kept, 1, period + 0.1);
+  v = of_impacts(&hit, 1, period + 0.1);
   assert_int_equal(v.result, RIC_NOT_CLOSED);
+}
+
+/* What makes no sense is refused; what cannot begin is a finding. */
+static void requests_that_make_no_sense_are_refused(void **state) {
+  (void)state;
+  ric_lattice mass = ric_lattice_default(1, RIC_ENDS_FREE);
+  ric_obstacle floor = ric_obstacle_floor(0, -0.5);
+  ric_system *system = lattice_system(&mass, &floor, 1);
+  ric_orbit orbit, large;
+  ric_verification v;
+  const double q[2] = {1, 1}, u[2] = {0, 0}, below = -0.6;
+  assert_int_equal(ric_orbit_init_for(&orbit, system, 1, NULL), RIC_OK);
+  assert_int_equal(ric_orbit_init(&large, 2, 1, NULL), RIC_OK);
+  orbit.impact_time[0] = 1;
+  assert_int_equal(ric_verify(system, &orbit, 0, q, u, NULL, &v, NULL), RIC_EINVAL); /* no period */
+  orbit.period = large.period = 4;
+  assert_int_equal(ric_verify(system, &large, 0, q, u, NULL, &v, NULL), RIC_EINVAL);
+  assert_int_equal(ric_verify(system, &orbit, 1, q, u, NULL, &v, NULL), RIC_EINVAL);
+  assert_int_equal(ric_verify(system, &orbit, 5, q, u, NULL, &v, NULL), RIC_EINVAL);
+  assert_int_equal(ric_verify(system, &orbit, 0, &below, u, NULL, &v, NULL), RIC_OK);
+  assert_int_equal(v.result, RIC_RUN_FAILED);
+  assert_true(strlen(v.reason) > 0);
+  orbit.impact_obstacle[0] = 1;
+  assert_int_equal(ric_verify(system, &orbit, 0, q, u, NULL, &v, NULL), RIC_EINVAL);
+  ric_orbit_clear(&orbit);
+  ric_orbit_clear(&large);
+  ric_system_destroy(&system);
 }
 
 int main(void) {
@@ -120,7 +151,8 @@ int main(void) {
       cmocka_unit_test(random_admissible_orbits_pass),
       cmocka_unit_test(disturbed_orbit_does_not_close),
       cmocka_unit_test(inadmissible_orbits_are_not_run),
-      cmocka_unit_test(promises_are_kept_missed_or_exceeded),
+      cmocka_unit_test(predicted_impacts_happen_or_are_missed_or_exceeded),
+      cmocka_unit_test(requests_that_make_no_sense_are_refused),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -6,8 +6,8 @@ import json
 import re
 import subprocess
 
-ORDER = ["base", "study", "model", "kind", "run", "result", "command"]
-FORBIDDEN = {("run", "model"), ("run", "kind"), ("result", "model"), ("result", "kind")}  # they know no kind of study
+ORDER = ["base", "study", "run", "result", "model", "kind", "command"]
+FORBIDDEN = {("model", "run"), ("model", "result"), ("kind", "run")}  # what tasks compute knows no rank and no checkpoint
 KINDS = {  # what the folder of a kind uses of others
     "family": {"trajectory"}, "orbits": {"family", "trajectory"}, "trajectory": set(),
     "branch": {"family", "orbits"}, "grazing": {"family"}, "diagram": {"family", "grazing"}}  # fmt: skip
@@ -49,9 +49,35 @@ def test_includes_of_the_application_point_one_way(source):
 
 
 def test_sources_are_as_clang_format_leaves_them(source):
-    files = [path for room in ("lib", "apps", "tests", "examples") for path in (source / room).rglob("*.[ch]")]
+    files = [path for room in ("lib", "apps", "tests") for path in (source / room).rglob("*.[ch]")]
     done = subprocess.run(["clang-format", "--dry-run", "-Werror", *files], capture_output=True, text=True)
     assert files and done.returncode == 0, done.stderr[-2000:]
+
+
+def words_of(text, heading):
+    """Names of the chapters under a heading of the study reference, in order."""
+    chapter = re.search(rf"^## {heading}\n(.*?)(?=^## |\Z)", text, re.M | re.S).group(1)
+    return re.findall(r"^### `[\w.]+: (\w+)`$", chapter, re.M)
+
+
+def test_every_kind_and_model_has_a_chapter_with_an_example_and_a_line_of_help(ricochet, source, folder):
+    reference = (source / "docs" / "studies.md").read_text()
+    help_text = ricochet("--help", cwd=folder).expect_done().out
+    for heading, key in (("Kinds of study", "kind"), ("Models", "model.type")):
+        allowed = re.search(rf"^\| `{key}` \| one of ([\w, ]+) \|", reference, re.M).group(1).split(", ")
+        assert words_of(reference, heading) == allowed
+        for word in allowed:
+            chapter = reference.split(f"### `{key}: {word}`")[1].split("\n##")[0]
+            assert re.search(rf"```yaml\n.*\b{key.split('.')[-1]}: {word}\b.*?```", chapter, re.S), word
+            assert re.search(rf"^  {word} +\w", help_text, re.M), word
+
+
+def test_examples_of_the_study_reference_are_studies(ricochet, source, folder):
+    examples = re.findall(r"```yaml\n(.*?)```", (source / "docs" / "studies.md").read_text(), re.S)
+    assert examples
+    for example in examples:
+        (folder / "example.yaml").write_text(example)
+        ricochet("check", "example.yaml", cwd=folder).expect_done()
 
 
 def test_the_study_reference_is_what_the_schema_table_prints(ricochet, source, folder):

@@ -9,9 +9,8 @@ struct study {
   char *text;
 };
 
-struct study_values {
-  const study *of;
-};
+static const schema_entry gamma_key = {.path = "model.gamma", .units = "", .doc = "stiffness of the springs"};
+static const schema_entry floor_key = {.path = "model.floor", .units = "length", .doc = "position of the obstacle"};
 
 study *fake_study_create(size_t gammas, size_t floors, size_t text_bytes) {
   study *s = calloc(1, sizeof *s);
@@ -28,8 +27,8 @@ study *fake_study_create(size_t gammas, size_t floors, size_t text_bytes) {
   if (gammas == 0 && floors == 0)
     return s;
   s->sweep_count = 2;
-  s->sweeps[0] = (study_sweep){.name = "model.gamma", .key = KEY_MODEL_GAMMA, .item = -1, .points = gammas};
-  s->sweeps[1] = (study_sweep){.name = "model.floor[3]", .key = KEY_MODEL_FLOOR, .item = 3, .points = floors};
+  s->sweeps[0] = (study_sweep){.name = "model.gamma", .key = &gamma_key, .item = -1, .points = gammas};
+  s->sweeps[1] = (study_sweep){.name = "model.floor[3]", .key = &floor_key, .item = 3, .points = floors};
   return s;
 }
 
@@ -66,25 +65,7 @@ double study_sweep_value(const study *s, size_t index, uint64_t task) {
   return index == 0 ? 0.1 * (double)(task / fast) : -1 - (double)(task % fast);
 }
 
-const schema_entry *schema_row(study_key key) {
-  static const schema_entry gamma = {.path = "model.gamma", .units = "", .doc = "stiffness of the springs"};
-  static const schema_entry level = {.path = "model.floor", .units = "length", .doc = "position of the obstacle"};
-  return key == KEY_MODEL_GAMMA ? &gamma : &level;
-}
-
-study_values *study_values_create(const study *s) {
-  study_values *v = malloc(sizeof *v);
-  if (v)
-    v->of = s;
-  return v;
-}
-
-void study_values_destroy(study_values **v) {
-  free(*v);
-  *v = NULL;
-}
-
-const char *value_word(const study_values *v, study_key key) {
-  (void)v;
-  return key == KEY_TITLE ? "made up, \xc3\xa0 la carte" : "";
+const char *study_title(const study *s) {
+  (void)s;
+  return "made up, \xc3\xa0 la carte";
 }

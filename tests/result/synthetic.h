@@ -27,4 +27,7 @@ void synthetic_clear(synthetic *s);
 /** Writes a file of small tables from this process alone, without MPI. @returns 0 or an exit code */
 int synthetic_write(const char *path);
 
+/** Its groups have no cards. */
+result_card *synthetic_card(const char *group);
+
 #endif

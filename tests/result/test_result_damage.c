@@ -130,7 +130,7 @@ static void truncated_file_is_refused(void **state) {
     store(count, good.count, 0);
     assert_refused("");
     assert_int_equal(result_study_digest("damaged.h5", &digest, &why), EXIT_FILES);
-    assert_int_equal(result_show("damaged.h5", &why), EXIT_FILES);
+    assert_int_equal(result_show("damaged.h5", synthetic_card, &why), EXIT_FILES);
     assert_int_equal(result_show_csv("damaged.h5", NULL, &why), EXIT_FILES);
   }
 }

@@ -54,7 +54,7 @@ static void assert_line(const char *line) {
 static void show_names_the_study_and_its_sweeps(void **state) {
   (void)state;
   message why;
-  PRINTED(result_show(RESULT_FILE, &why), 0);
+  PRINTED(result_show(RESULT_FILE, synthetic_card, &why), 0);
   assert_line("title      made up, \xc3\xa0 la carte");
   assert_line("command    ricochet run made-up.yaml");
   assert_line("sweep      model.gamma: 5 values from 0 to 0.4");
@@ -64,7 +64,7 @@ static void show_names_the_study_and_its_sweeps(void **state) {
 static void show_lists_columns_and_counts_words(void **state) {
   (void)state;
   message why;
-  PRINTED(result_show(RESULT_FILE, &why), 0);
+  PRINTED(result_show(RESULT_FILE, synthetic_card, &why), 0);
   assert_line("/orbits");
   assert_line("  q                   float64     [task 20, particle 6]            length  a made-up number");
   assert_line("  path                float64     [task 20, sample 5, particle 6]  length  a made-up number");
@@ -76,7 +76,7 @@ static void show_lists_columns_and_counts_words(void **state) {
 static void show_prints_special_points_up_to_forty(void **state) {
   (void)state;
   message why;
-  PRINTED(result_show(RESULT_FILE, &why), 0);
+  PRINTED(result_show(RESULT_FILE, synthetic_card, &why), 0);
   assert_line("  kind       gamma             multiplier                          remark");
   assert_line("  zero       0.841470984808    0.841470984808+0.842010866288i      particle 3, \"at once\"");
   assert_line("  zero       nan               nan+0.140129945168i                 0123456789abcdef0123456789abcdef");
@@ -114,7 +114,7 @@ static void failing_output_is_an_error(void **state) {
   (void)state;
   message why;
   int saved = redirect("/dev/full");
-  int plain = result_show(RESULT_FILE, &why);
+  int plain = result_show(RESULT_FILE, synthetic_card, &why);
   clearerr(stdout);
   int csv = result_show_csv(RESULT_FILE, NULL, &why);
   restore(saved);

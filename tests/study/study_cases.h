@@ -4,7 +4,18 @@
 
 #include "support.h"
 
-#include "study/study.h"
+#include "kind/branch/branch.h"
+#include "kind/diagram/diagram.h"
+#include "kind/family/family_check.h"
+#include "kind/kind.h"
+
+/* Parses a text as a study of the program. */
+static inline int read_study(const char *name, const char *text, size_t length, const char *const *sets, size_t n_sets,
+                             study **out, message *why) {
+  const study_source from = {
+      .schema = &studies, .name = name, .text = text, .length = length, .sets = sets, .set_count = n_sets};
+  return study_parse(&from, out, why);
+}
 
 /* Line numbers in the tests count from here. */
 static const char base_study[] = "kind: orbits\n"               /* 1 */
@@ -46,7 +57,7 @@ static inline char *varied(const char *from, const char *to) {
 static inline study *parsed(const char *text, const char *const *sets, size_t n_sets) {
   study *s = NULL;
   message why = {{0}};
-  if (study_parse("s.yaml", text, strlen(text), sets, n_sets, &s, &why) != 0)
+  if (read_study("s.yaml", text, strlen(text), sets, n_sets, &s, &why) != 0)
     fail_msg("refused: %s\nstudy:\n%s", why.text, text);
   assert_non_null(s);
   return s;
@@ -64,7 +75,7 @@ static inline void assert_refused(const char *text, size_t length, const char *c
                                   const char *place, const char *phrase, const char *other) {
   study *s = NULL;
   message why = {{0}};
-  if (study_parse("s.yaml", text, length, sets, n_sets, &s, &why) == 0)
+  if (read_study("s.yaml", text, length, sets, n_sets, &s, &why) == 0)
     fail_msg("accepted, expected '%s ... %s':\n%.2000s", place, phrase, text);
   assert_null(s);
   if (strncmp(why.text, place, strlen(place)) != 0 || !strstr(why.text, phrase) || !strstr(why.text, other))

@@ -10,14 +10,14 @@ static const char branch[] = "kind: branch\n"
 static void the_parameter_may_be_left_out_and_moves_within_a_task(void **state) {
   (void)state;
   study *s = parsed(branch, NULL, 0);
-  assert_string_equal(study_followed(s)->name, "model.gamma");
-  assert_true(study_followed(s)->key == KEY_MODEL_GAMMA && study_followed(s)->item == -1);
-  assert_false(study_restarts(s));
+  assert_string_equal(family_followed(s)->name, "model.gamma");
+  assert_true(family_followed(s)->key == KEY_MODEL_GAMMA && family_followed(s)->item == -1);
+  assert_false(branch_restarts(s));
   assert_int_equal(study_tasks(s), 2);
   study_values *v = study_values_create(s);
   assert_non_null(v);
   assert_true(value_number(v, KEY_MODEL_GAMMA, 0) == 0.1);
-  study_values_follow(v, 0.05);
+  study_values_move(v, KEY_BRANCH_PARAMETER, 0.05);
   assert_true(value_number(v, KEY_MODEL_GAMMA, 0) == 0.05 && value_number(v, KEY_ORBIT_PERIOD, 0) == 5);
   study_values_at(v, 1);
   assert_true(value_number(v, KEY_MODEL_GAMMA, 0) == 0.1 && value_number(v, KEY_ORBIT_PERIOD, 0) == 6);
@@ -29,18 +29,18 @@ static void the_second_parameter_of_curves_moves_within_a_task_too(void **state)
   (void)state;
   const char *set = "branch.trace={parameter: \"model.floor[1]\", low: -3, high: -1}";
   study *s = parsed(branch, &set, 1);
-  assert_true(study_traced(s)->key == KEY_MODEL_FLOOR && study_traced(s)->item == 1);
+  assert_true(family_traced(s)->key == KEY_MODEL_FLOOR && family_traced(s)->item == 1);
   study_values *v = study_values_create(s);
   assert_non_null(v);
-  study_values_trace(v, -2.5);
-  study_values_follow(v, 0.05);
+  study_values_move(v, KEY_BRANCH_TRACE_PARAMETER, -2.5);
+  study_values_move(v, KEY_BRANCH_PARAMETER, 0.05);
   assert_true(value_number(v, KEY_MODEL_FLOOR, 0) == -1 && value_number(v, KEY_MODEL_FLOOR, 1) == -2.5);
   study_values_at(v, 1);
   assert_true(value_number(v, KEY_MODEL_FLOOR, 1) == -2 && value_number(v, KEY_MODEL_GAMMA, 0) == 0.1);
   study_values_destroy(&v);
   study_destroy(&s);
   s = parsed(branch, NULL, 0);
-  assert_int_equal(study_traced(s)->key, KEY_COUNT);
+  assert_null(family_traced(s));
   study_destroy(&s);
 }
 
@@ -76,10 +76,10 @@ static void elements_of_lists_can_be_followed(void **state) {
   static const char *const sets[] = {"branch.parameter=model.floor[1]", "branch.to=-3", "branch.from=-2",
                                      "model.gamma=0.2"};
   study *s = parsed(branch, sets, 4);
-  assert_true(study_followed(s)->key == KEY_MODEL_FLOOR && study_followed(s)->item == 1);
+  assert_true(family_followed(s)->key == KEY_MODEL_FLOOR && family_followed(s)->item == 1);
   study_values *v = study_values_create(s);
   assert_non_null(v);
-  study_values_follow(v, -2.5);
+  study_values_move(v, KEY_BRANCH_PARAMETER, -2.5);
   assert_true(value_number(v, KEY_MODEL_FLOOR, 0) == -1 && value_number(v, KEY_MODEL_FLOOR, 1) == -2.5);
   study_values_destroy(&v);
   study_destroy(&s);
@@ -99,7 +99,7 @@ static void a_study_that_restarts_need_not_say_where_it_starts(void **state) {
   static const char text[] = "kind: branch\nmodel: {type: chain, particles: 3, gamma: 0}\norbit: {motion: even}\n"
                              "branch: {parameter: orbit.period, to: 5}\nrestart: {file: r.h5, point: 3}\n";
   study *s = parsed(text, NULL, 0);
-  assert_true(study_restarts(s) && study_followed(s)->key == KEY_ORBIT_PERIOD);
+  assert_true(branch_restarts(s) && family_followed(s)->key == KEY_ORBIT_PERIOD);
   study_values *v = study_values_create(s);
   assert_non_null(v);
   assert_string_equal(value_word(v, KEY_RESTART_FILE), "r.h5");
@@ -124,7 +124,8 @@ static void branches_that_do_not_say_start_at_the_own_value(void **state) {
   v = study_values_create(s);
   assert_non_null(v);
   assert_true(value_number(v, KEY_BRANCH_FROM, 0) == -INFINITY && value_number(v, KEY_ORBIT_ENERGY, 0) == -INFINITY);
-  study_values_begin(v, 1.5);
+  study_values_move(v, KEY_BRANCH_FROM, 1.5);
+  study_values_move(v, KEY_BRANCH_PARAMETER, 1.5);
   assert_true(value_number(v, KEY_BRANCH_FROM, 0) == 1.5 && value_number(v, KEY_ORBIT_ENERGY, 0) == 1.5);
   study_values_at(v, 0);
   assert_true(value_number(v, KEY_BRANCH_FROM, 0) == -INFINITY);
@@ -148,8 +149,8 @@ static void single_values_mean_what_the_type_of_model_says(void **state) {
 static void other_kinds_follow_nothing(void **state) {
   (void)state;
   study *s = parsed(base_study, NULL, 0);
-  assert_int_equal(study_followed(s)->key, KEY_COUNT);
-  assert_false(study_restarts(s));
+  assert_null(family_followed(s));
+  assert_false(branch_restarts(s));
   study_destroy(&s);
 }
 

@@ -1,29 +1,29 @@
 /* Studies of kinds: diagram and basin: what they iterate, what is observed, how their keys fit together. */
 #include "study_cases.h"
 
-static const char map[] = "kind: diagram\n"                                                 /* 1 */
-                          "model: {type: grazing_map, lambda: 0.5, omega: 0.3, d: 0.01}\n"  /* 2 */
-                          "iterate: {transient: 100, keep: 50}\n";                          /* 3 */
-static const char listed[] = "kind: diagram\n"                                              /* 1 */
-                             "model:\n"                                                     /* 2 */
-                             "  type: grazing_map\n"                                        /* 3 */
-                             "  L: [0.5, 0, 0, 0.2]\n"                                      /* 4 */
-                             "  eta: [1, 0]\n"                                              /* 5 */
-                             "  xi: [1, 1]\n"                                               /* 6 */
-                             "  kappa: []\n"                                                /* 7 */
-                             "  d: 0.01\n"                                                  /* 8 */
-                             "iterate: {keep: 5}\n";                                        /* 9 */
-static const char chain[] = "kind: diagram\n"                                               /* 1 */
-                            "model: {type: chain, particles: 2, gamma: 0.1, floor: null,\n" /* 2 */
-                            "        wall: [null, 1], force: 2}\n"                          /* 3 */
-                            "iterate: {keep: 5}\n";                                         /* 4 */
-static const char beyond[] = "kind: diagram\n"                                              /* 1 */
-                             "model: {type: chain, particles: 1, gamma: 0, floor: null,\n"  /* 2 */
-                             "        wall: 1, damping: 3, force: 1}\n"                     /* 3 */
-                             "orbit: {motion: forced}\n"                                    /* 4 */
-                             "branch: {parameter: model.force, from: 1, to: 50}\n"          /* 5 */
-                             "iterate: {keep: 5}\n"                                         /* 6 */
-                             "sweep: {parameter: grazing.beyond, values: [1e-3, 2e-3]}\n";  /* 7 */
+static const char map[] = "kind: diagram\n"                                                      /* 1 */
+                          "model: {type: grazing_map, lambda: 0.5, omega: 0.3, d: 0.01}\n"       /* 2 */
+                          "iterate: {transient: 100, keep: 50}\n";                               /* 3 */
+static const char listed[] = "kind: diagram\n"                                                   /* 1 */
+                             "model:\n"                                                          /* 2 */
+                             "  type: grazing_map\n"                                             /* 3 */
+                             "  L: [0.5, 0, 0, 0.2]\n"                                           /* 4 */
+                             "  eta: [1, 0]\n"                                                   /* 5 */
+                             "  xi: [1, 1]\n"                                                    /* 6 */
+                             "  kappa: []\n"                                                     /* 7 */
+                             "  d: 0.01\n"                                                       /* 8 */
+                             "iterate: {keep: 5}\n";                                             /* 9 */
+static const char chain[] = "kind: diagram\n"                                                    /* 1 */
+                            "model: {type: chain, particles: 2, gamma: 0.1, floor: null,\n"      /* 2 */
+                            "        wall: [null, 1], force: 2}\n"                               /* 3 */
+                            "iterate: {keep: 5}\n";                                              /* 4 */
+static const char beyond_study[] = "kind: diagram\n"                                             /* 1 */
+                                   "model: {type: chain, particles: 1, gamma: 0, floor: null,\n" /* 2 */
+                                   "        wall: 1, damping: 3, force: 1}\n"                    /* 3 */
+                                   "orbit: {motion: forced}\n"                                   /* 4 */
+                                   "branch: {parameter: model.force, from: 1, to: 50}\n"         /* 5 */
+                                   "iterate: {keep: 5}\n"                                        /* 6 */
+                                   "sweep: {parameter: grazing.beyond, values: [1e-3, 2e-3]}\n"; /* 7 */
 
 /* A study with one line replaced or, with an empty `from`, added. */
 typedef struct refused_case {
@@ -60,11 +60,11 @@ static void states_have_the_size_of_their_model(void **state) {
                {listed, NULL, 2, true},
                {chain, NULL, 4, false},
                {chain, "iterate.section=impact", 5, false},
-               {beyond, NULL, 2, false}};
+               {beyond_study, NULL, 2, false}};
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
     study *s = with(cases[i].text, cases[i].set);
-    assert_int_equal(study_state_size(s), cases[i].size);
-    assert_true(study_is_map(s) == cases[i].is_map && study_iterates(s));
+    assert_int_equal(diagram_state_size(s), cases[i].size);
+    assert_true(model_has(s, MODEL_MAP) == cases[i].is_map);
     study_destroy(&s);
   }
 }
@@ -85,21 +85,21 @@ static void what_is_observed_is_an_index_into_the_state(void **state) {
                {chain, "iterate={section: impact, observe: time}", 4}};
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
     study *s = with(cases[i].text, cases[i].set);
-    assert_int_equal(study_observed(s), cases[i].observed);
+    assert_int_equal(diagram_observed(s), cases[i].observed);
     study_destroy(&s);
   }
 }
 
 static void only_diagrams_with_grazing_beyond_follow_a_family(void **state) {
   (void)state;
-  const char *const texts[] = {map, listed, chain, beyond};
+  const char *const texts[] = {map, listed, chain, beyond_study};
   for (size_t i = 0; i < 4; i++) {
     study *s = parsed(texts[i], NULL, 0);
-    assert_true(study_is_beyond(s) == (i == 3) && study_follows(s) == (i == 3));
+    assert_true(diagram_is_beyond(s) == (i == 3) && (family_followed(s) != NULL) == (i == 3));
     study_destroy(&s);
   }
   study *s = parsed("kind: basin\nmodel: {type: grazing_map, lambda: 0.5, omega: 0.3, d: 0.01}\n", NULL, 0);
-  assert_true(study_iterates(s) && !study_is_beyond(s) && !study_windows(s));
+  assert_true(!diagram_is_beyond(s) && !diagram_has_windows(s));
   study_destroy(&s);
 }
 
@@ -176,7 +176,7 @@ static void numbers_of_a_run_are_refused_with_what_is_allowed(void **state) {
   static const refused_case cases[] = {
       {map, "transient", "trasient", "s.yaml:3: ", "unknown key 'trasient' in iterate; did you mean 'transient'?"},
       {map, "{transient: 100, keep: 50}", "3",
-       "s.yaml:3: ", "iterate = 3, expected a mapping of the keys transient, keep"},
+       "s.yaml:3: ", "iterate = 3, expected a mapping of the keys transient, measure"},
       {map, "transient: 100", "transient: 1.5", "s.yaml:3: ", "iterate.transient = 1.5, expected an integer from 0"},
       {map, "keep: 50", "keep: -1", "s.yaml:3: ", "iterate.keep = -1 is out of range, expected an integer from 0 to"},
       {map, "keep: 50", "keep: 50, measure: 49",
@@ -263,19 +263,20 @@ static void families_are_of_diagrams_beyond_grazing(void **state) {
       {map, "", "orbit: {motion: forced}\n", "s.yaml:4: ", lonely},
       {map, "", "branch: {parameter: model.d, from: 1, to: 2}\n", "s.yaml:4: ", lonely},
       {chain, "", "orbit: {motion: forced}\n", "s.yaml:5: ", lonely},
-      {beyond, "grazing.beyond", "iterate.phase", "s.yaml:5: ", lonely},
-      {beyond, "motion: forced", "motion: conservative",
+      {beyond_study, "grazing.beyond", "iterate.phase", "s.yaml:5: ", lonely},
+      {beyond_study, "motion: forced", "motion: conservative",
        "s.yaml:7: ", "grazing.beyond needs orbit.motion: forced, and this is conservative"},
-      {beyond, "motion: forced", "period: 3",
+      {beyond_study, "motion: forced", "period: 3",
        "s.yaml:7: ", "grazing.beyond needs orbit.motion: forced, and this is even"},
-      {beyond, "keep: 5", "section: impact",
+      {beyond_study, "keep: 5", "section: impact",
        "s.yaml:7: ", "grazing.beyond needs iterate.section: strobe, and this is impact"},
-      {beyond, "branch: {parameter: model.force, from: 1, to: 50}\n", "", "s.yaml: ", "missing key branch.parameter"},
-      {beyond, "to: 50", "to: 50, cross: true",
+      {beyond_study, "branch: {parameter: model.force, from: 1, to: 50}\n", "",
+       "s.yaml: ", "missing key branch.parameter"},
+      {beyond_study, "to: 50", "to: 50, cross: true",
        "s.yaml:5: ", "branch.cross is a key of kind: branch, and this is kind: diagram"},
-      {beyond, "to: 50", "to: 50, trace: {parameter: model.damping, low: 1, high: 4}",
+      {beyond_study, "to: 50", "to: 50, trace: {parameter: model.damping, low: 1, high: 4}",
        "s.yaml:5: ", "branch.trace.parameter is a key of kind: branch or grazing, and this is kind: diagram"},
-      {beyond, "", "grazing: {windows: 3}\n", "s.yaml:8: ", "grazing.windows is a key of kind: grazing"},
+      {beyond_study, "", "grazing: {windows: 3}\n", "s.yaml:8: ", "grazing.windows is a key of kind: grazing"},
   };
   ASSERT_CASES(cases);
 }

@@ -220,7 +220,7 @@ static void cut_values_keep_whole_characters(void **state) {
   char *text = varied("ends: periodic", value);
   study *s = NULL;
   message why = {{0}};
-  assert_int_equal(study_parse("s.yaml", text, strlen(text), NULL, 0, &s, &why), EXIT_USAGE);
+  assert_int_equal(read_study("s.yaml", text, strlen(text), NULL, 0, &s, &why), EXIT_USAGE);
   char *cut = strstr(why.text, "...");
   assert_non_null(cut);
   *cut = 0; /* what is left must end with a whole character of the value */

@@ -4,7 +4,7 @@
 static void parse_anything(const char *text, size_t length, const char *const *sets, size_t n_sets) {
   study *s = NULL;
   message why = {{0}};
-  const int code = study_parse("s.yaml", text, length, sets, n_sets, &s, &why);
+  const int code = read_study("s.yaml", text, length, sets, n_sets, &s, &why);
   assert_true(code == 0 || code == EXIT_USAGE);
   assert_true((s != NULL) == (code == 0));
   const char *begin = n_sets ? "--set " : "s.yaml:";
@@ -18,9 +18,9 @@ static void round_trip_a_study(const char *text, size_t length) {
   const char *set = "model.ends=free";
   study *s = NULL, *again = NULL;
   message why = {{0}};
-  if (study_parse("s.yaml", text, length, &set, 1, &s, &why) != 0)
+  if (read_study("s.yaml", text, length, &set, 1, &s, &why) != 0)
     return;
-  if (study_parse("again", study_text(s), strlen(study_text(s)), NULL, 0, &again, &why) != 0)
+  if (read_study("again", study_text(s), strlen(study_text(s)), NULL, 0, &again, &why) != 0)
     fail_msg("%s: not a study any more:\n%s", why.text, study_text(s));
   assert_true(study_digest(s) == study_digest(again));
   study_destroy(&s);
@@ -78,13 +78,13 @@ static void mutated_sets_are_applied_or_refused(void **state) {
   }
 }
 
-static char *repeated(const char *head, const char *unit, size_t count, const char *tail) {
-  char *text = malloc(strlen(head) + count * strlen(unit) + strlen(tail) + 1);
+static char *repeated(const char *head, const char *unit, size_t count, const char *ending) {
+  char *text = malloc(strlen(head) + count * strlen(unit) + strlen(ending) + 1);
   assert_non_null(text);
   char *end = text + sprintf(text, "%s", head);
   for (size_t i = 0; i < count; i++, end += strlen(unit))
     memcpy(end, unit, strlen(unit));
-  strcpy(end, tail);
+  strcpy(end, ending);
   return text;
 }
 

@@ -1,33 +1,34 @@
 #include "support.h"
 
-#include "study/schema.h"
+#include "kind/kind.h"
 
 static void every_row_is_complete(void **state) {
   (void)state;
-  for (int key = 0; key < KEY_COUNT; key++) {
-    const schema_entry *row = schema_row((study_key)key);
+  for (size_t key = 0; key < studies.key_count; key++) {
+    const study_key row = studies.keys[key];
     assert_non_null(row->path);
     assert_non_null(row->doc);
-    assert_int_equal(schema_find(row->path), key);
+    assert_ptr_equal(schema_find(&studies, row->path), row);
     assert_true(row->scalar || row->list);
     assert_true(row->required == (row->fallback == NULL));
     assert_true(row->sweep == (row->no_sweep == NULL));
     assert_true((row->type == VALUE_WORD) == (row->words != NULL));
   }
-  assert_int_equal(schema_find("model.gama"), KEY_COUNT);
-  assert_int_equal(schema_find("model"), KEY_COUNT);
-  assert_int_equal(schema_find(""), KEY_COUNT);
+  assert_null(schema_find(&studies, "model.gama"));
+  assert_null(schema_find(&studies, "model"));
+  assert_null(schema_find(&studies, ""));
 }
 
 static void sections_within_sections_have_names_of_their_own(void **state) {
   (void)state;
   char names[256];
-  assert_true(schema_is_section("branch") && schema_is_section("branch.trace"));
-  assert_false(schema_is_section("branch.trace.low") || schema_is_section("branch.from") || schema_is_section("bran"));
-  schema_names("branch", names, sizeof names);
+  assert_true(schema_is_section(&studies, "branch") && schema_is_section(&studies, "branch.trace"));
+  assert_false(schema_is_section(&studies, "branch.trace.low") || schema_is_section(&studies, "branch.from") ||
+               schema_is_section(&studies, "bran"));
+  schema_names(&studies, "branch", names, sizeof names);
   assert_non_null(strstr(names, "segments, trace"));
   assert_null(strstr(names, "trace."));
-  schema_names("branch.trace", names, sizeof names);
+  schema_names(&studies, "branch.trace", names, sizeof names);
   assert_int_equal(strncmp(names, "parameter, low, high", 20), 0);
 }
 
@@ -59,7 +60,7 @@ static void mistyped_names_find_the_nearest_key(void **state) {
                                          {"colour", ""}};
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
     char near[64];
-    schema_nearest(cases[i][0], near, sizeof near);
+    schema_nearest(&studies, cases[i][0], near, sizeof near);
     assert_string_equal(near, cases[i][1]);
   }
 }
@@ -67,11 +68,11 @@ static void mistyped_names_find_the_nearest_key(void **state) {
 static void parameters_are_looked_for_among_the_sweepable(void **state) {
   (void)state;
   char near[64];
-  schema_nearest_parameter("model.gama", near, sizeof near);
+  schema_nearest_parameter(&studies, "model.gama", near, sizeof near);
   assert_string_equal(near, "model.gamma");
-  schema_nearest_parameter("period", near, sizeof near);
+  schema_nearest_parameter(&studies, "period", near, sizeof near);
   assert_string_equal(near, "orbit.period");
-  schema_nearest_parameter("model.endz", near, sizeof near);
+  schema_nearest_parameter(&studies, "model.endz", near, sizeof near);
   assert_string_equal(near, "");
 }
 
@@ -80,15 +81,15 @@ static void very_long_names_are_near_to_nothing(void **state) {
   char name[5000], near[64];
   memset(name, 'a', sizeof name);
   name[sizeof name - 1] = 0;
-  schema_nearest(name, near, sizeof near);
+  schema_nearest(&studies, name, near, sizeof near);
   assert_string_equal(near, "");
-  schema_nearest_parameter(name, near, sizeof near);
+  schema_nearest_parameter(&studies, name, near, sizeof near);
   assert_string_equal(near, "");
 }
 
 static void assert_allowed(study_key key, const char *expected) {
   char text[256];
-  schema_allowed(schema_row(key), text, sizeof text);
+  schema_allowed(key, text, sizeof text);
   assert_string_equal(text, expected);
 }
 
@@ -122,7 +123,7 @@ static void open_ranges_are_said_and_checked(void **state) {
 
 static void numbers_outside_a_row_do_not_fit(void **state) {
   (void)state;
-  const schema_entry *gamma = schema_row(KEY_MODEL_GAMMA), *particles = schema_row(KEY_MODEL_PARTICLES);
+  const study_key gamma = KEY_MODEL_GAMMA, particles = KEY_MODEL_PARTICLES;
   assert_int_equal(schema_check(gamma, 0), FIT_OK);
   assert_int_equal(schema_check(gamma, -1e-300), FIT_OUT_OF_RANGE);
   assert_int_equal(schema_check(gamma, NAN), FIT_OUT_OF_RANGE);
@@ -130,29 +131,29 @@ static void numbers_outside_a_row_do_not_fit(void **state) {
   assert_int_equal(schema_check(particles, NAN), FIT_OUT_OF_RANGE);
   assert_int_equal(schema_check(particles, 2.5), FIT_NOT_INTEGER);
   assert_int_equal(schema_check(particles, 0), FIT_OUT_OF_RANGE);
-  assert_int_equal(schema_check(schema_row(KEY_ORBIT_AT_START), 0x1p53), FIT_OUT_OF_RANGE);
-  assert_int_equal(schema_check(schema_row(KEY_ORBIT_PERIOD), 0), FIT_OUT_OF_RANGE);
+  assert_int_equal(schema_check(KEY_ORBIT_AT_START, 0x1p53), FIT_OUT_OF_RANGE);
+  assert_int_equal(schema_check(KEY_ORBIT_PERIOD, 0), FIT_OUT_OF_RANGE);
 }
 
 /* Of every key, each section that it stands in: known, listed at the place where it belongs, and found with a
  * letter too many. */
 static void sections_follow_from_the_keys(void **state) {
   (void)state;
-  for (int key = 0; key < KEY_COUNT; key++) {
-    const char *path = schema_row((study_key)key)->path;
+  for (size_t key = 0; key < studies.key_count; key++) {
+    const char *path = studies.keys[key]->path;
     for (const char *dot = strchr(path, '.'); dot; dot = strchr(dot + 1, '.')) {
       char section[64], outer[64] = "", near[64], names[1024];
       snprintf(section, sizeof section, "%.*s", (int)(dot - path), path);
       const char *inner = strrchr(section, '.');
       snprintf(outer, sizeof outer, "%.*s", inner ? (int)(inner - section) : 0, section);
-      assert_true(schema_is_section(section));
-      schema_names(outer, names, sizeof names);
+      assert_true(schema_is_section(&studies, section));
+      schema_names(&studies, outer, names, sizeof names);
       char listed[1100], wanted[80];
       snprintf(listed, sizeof listed, ", %s,", names);
       snprintf(wanted, sizeof wanted, ", %s,", inner ? inner + 1 : section);
       assert_non_null(strstr(listed, wanted));
       snprintf(wanted, sizeof wanted, "%s_", section);
-      schema_nearest(wanted, near, sizeof near);
+      schema_nearest(&studies, wanted, near, sizeof near);
       assert_string_equal(near, section);
     }
   }
@@ -163,7 +164,7 @@ static void reference_lists_every_key(void **state) {
   char *text = NULL;
   FILE *file = tmpfile();
   assert_non_null(file);
-  schema_reference(file);
+  schema_reference(&studies, file);
   const long length = ftell(file);
   assert_true(length > 0);
   text = calloc((size_t)length + 1, 1);
@@ -171,11 +172,11 @@ static void reference_lists_every_key(void **state) {
   rewind(file);
   assert_int_equal(fread(text, 1, (size_t)length, file), length);
   fclose(file);
-  for (int key = 0; key < KEY_COUNT; key++) {
+  for (size_t key = 0; key < studies.key_count; key++) {
     char cell[128];
-    snprintf(cell, sizeof cell, "| `%s` |", schema_row((study_key)key)->path);
+    snprintf(cell, sizeof cell, "| `%s` |", studies.keys[key]->path);
     assert_non_null(strstr(text, cell));
-    assert_non_null(strstr(text, schema_row((study_key)key)->doc));
+    assert_non_null(strstr(text, studies.keys[key]->doc));
   }
   for (int key = 0; key < SWEEP_KEY_COUNT; key++)
     assert_non_null(strstr(text, schema_sweep_row((sweep_key)key)->doc));

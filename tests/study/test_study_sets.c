@@ -53,7 +53,7 @@ static void set_takes_whole_lists_and_sections(void **state) {
                               "title=a: b is one mapping", "title='a: b'"};
   study *s = NULL;
   message why;
-  assert_int_not_equal(study_parse("s.yaml", base_study, strlen(base_study), sets, 3, &s, &why), 0);
+  assert_int_not_equal(read_study("s.yaml", base_study, strlen(base_study), sets, 3, &s, &why), 0);
   s = with_sets(base_study, 4, sets);
   assert_int_equal(study_tasks(s), 2);
   study_destroy(&s);

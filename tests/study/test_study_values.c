@@ -54,7 +54,7 @@ static void null_floors_are_minus_infinity(void **state) {
                       "orbit: {period: pi, at_start: [2]}\n";
   study *s = NULL;
   message why;
-  assert_int_equal(study_parse("s.yaml", text, strlen(text), NULL, 0, &s, &why), EXIT_USAGE); /* three elements */
+  assert_int_equal(read_study("s.yaml", text, strlen(text), NULL, 0, &s, &why), EXIT_USAGE); /* three elements */
   const char *set = "model.particles=3";
   s = parsed(text, &set, 1);
   study_values *v = study_values_create(s);

@@ -19,6 +19,12 @@ typedef struct message {
   char text[1024];
 } message;
 
+/** The file that messages name, and where they go. */
+typedef struct file_place {
+  const char *path;
+  message *why;
+} file_place;
+
 /** Formats the sentence and returns `code`, so that a refusal is one statement: `return refuse(why, EXIT_USAGE, ...)`.
  */
 int refuse(message *why, int code, const char *format, ...) __attribute__((format(printf, 3, 4)));

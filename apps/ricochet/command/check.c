@@ -7,7 +7,6 @@
 #include "../kind/kind.h"
 #include "../kind/machine.h"
 #include "command.h"
-#include "restart.h"
 
 static const char help[] =
     "usage: ricochet check STUDY.yaml [--set KEY=VALUE ...]\n"
@@ -20,7 +19,7 @@ static const char help[] =
 
 static void print_plan(const study *s, const kind_plan *plan) {
   char memory[32], size[32];
-  printf("%s: kind %s\n", study_name(s), kind_of(s)->name);
+  printf("%s: kind %s\n", study_name(s), study_kind(s));
   for (size_t i = 0; i < study_sweeps(s); i++) {
     const study_sweep *w = study_sweep_at(s, i);
     printf("  sweep   %s: %zu values from %.12g to %.12g\n", w->name, w->points, w->values[0],
@@ -36,7 +35,7 @@ static void print_plan(const study *s, const kind_plan *plan) {
 static int check_study(const char *path, const char *const *sets, size_t set_count, message *why) {
   study *s = NULL;
   kind_plan plan;
-  int code = restart_read_study(path, sets, set_count, &s, why);
+  int code = kind_read_study(path, sets, set_count, &s, why);
   if (!code)
     code = kind_of(s)->plan(s, &plan, why);
   if (!code)
@@ -61,7 +60,7 @@ int command_check(int argc, char **argv) {
     if (option == 's')
       sets[set_count++] = optarg;
     else if (option == 'r' || option == 'h') {
-      option == 'h' ? (void)fputs(help, stdout) : schema_reference(stdout);
+      option == 'h' ? (void)fputs(help, stdout) : schema_reference(&studies, stdout);
       done = 1;
     } else if (option != -1)
       code = refuse(&why, EXIT_USAGE,

@@ -1,4 +1,4 @@
-#include "compute.h"
+#include "run.h"
 
 #include <stdlib.h>
 

@@ -18,6 +18,18 @@ static const char help[] = "usage: ricochet COMMAND ...\n"
                            "  COMMAND --help     options of a command\n"
                            "  --version          versions of ricochet and its libraries\n";
 
+static void print_choices(const char *title, const schema_choice *const *choices) {
+  printf("\n%s\n", title);
+  for (; *choices; choices++)
+    printf("  %-14s     %s\n", (*choices)->name, (*choices)->summary);
+}
+
+static void print_help(void) {
+  fputs(help, stdout);
+  print_choices("Kinds of study (`kind:` in STUDY.yaml; keys: ricochet check --reference)", studies.kinds);
+  print_choices("Models (`model.type:`)", studies.models);
+}
+
 int complain(int code, const message *why) {
   int has_place = strchr(why->text, ':') != NULL;
   fprintf(stderr, "%s%s\n", has_place ? "" : "ricochet: ", why->text);
@@ -51,7 +63,7 @@ int main(int argc, char **argv) {
   if (strcmp(word, "--version") == 0)
     return print_version();
   if (strcmp(word, "--help") == 0 || strcmp(word, "-h") == 0) {
-    fputs(help, stdout);
+    print_help();
     return finish_output(0);
   }
   if (argc > 1)

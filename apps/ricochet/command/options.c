@@ -1,6 +1,6 @@
 /* getopt_long is not in POSIX. */
 #define _GNU_SOURCE
-#include "options.h"
+#include "run.h"
 
 #include <getopt.h>
 #include <math.h>

@@ -1,4 +1,4 @@
-#include "output.h"
+#include "run.h"
 
 #include <dirent.h>
 #include <stdio.h>

@@ -8,9 +8,7 @@
 #include "../run/launcher.h"
 #include "../run/ranks.h"
 #include "command.h"
-#include "compute.h"
-#include "output.h"
-#include "restart.h"
+#include "run.h"
 
 static const char help[] =
     "usage: ricochet run STUDY.yaml [options]\n"
@@ -53,15 +51,16 @@ typedef struct run {
 static int load(run *r, message *why) {
   const run_options *o = &r->options;
   const bool first = ranks_rank() == 0;
-  int code = first ? restart_read_study(o->study_path, o->sets, o->set_count, &r->study, why) : 0;
+  int code = first ? kind_read_study(o->study_path, o->sets, o->set_count, &r->study, why) : 0;
   code = ranks_agree(code, why);
   if (code)
     return code;
   char *text = first ? (char *)(uintptr_t)study_text(r->study) : NULL; /* read only: rank 0 gives it away */
   size_t length = first ? strlen(text) : 0;
   code = ranks_share_text(&text, &length, why);
+  const study_source shared = {.schema = &studies, .name = o->study_path, .text = text, .length = length};
   if (!code)
-    code = ranks_agree(first ? 0 : study_parse(o->study_path, text, length, NULL, 0, &r->study, why), why);
+    code = ranks_agree(first ? 0 : study_parse(&shared, &r->study, why), why);
   if (!first)
     free(text);
   if (code)

@@ -3,7 +3,7 @@
 #include <getopt.h>
 #include <stdio.h>
 
-#include "../result/result.h"
+#include "../kind/kind.h"
 #include "command.h"
 
 static const char help[] =
@@ -23,7 +23,7 @@ static int show(what w, const char *path, const char *group, message *why) {
   if (w == SHOW_CSV)
     return result_show_csv(path, group, why);
   if (w == SHOW_CONTENTS)
-    return result_show(path, why);
+    return result_show(path, kind_card, why);
   int code = result_verify(path, why);
   if (!code)
     printf("%s: sound\n", path);

@@ -9,8 +9,9 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "study/study.h"
+#include "keys.h"
 #include "base/table.h"
+#include "result/result.h"
 
 enum { KIND_MOST_TAILS = 6, KIND_MOST_EXTRAS = 2 };
 
@@ -52,9 +53,12 @@ typedef struct extra_rows {
   unsigned char *rows; /* [count][layout.row_bytes], freed by the caller */
 } extra_rows;
 
-typedef struct kind {
-  const char *name;
-  const char *methods; /* of orbit.method that it is for, "impulse|dense"; NULL: all */
+typedef struct kind kind;
+
+struct kind {
+  schema_choice choice; /* its first member, so that a choice of the schema is a kind */
+  /** The kind that evaluates this study, where that depends on its keys; NULL: this one. */
+  const kind *(*variant)(const study *s);
   /** Lays out the results; refuses a study that cannot work or cannot fit (0 or EXIT_USAGE). */
   int (*plan)(const study *s, kind_plan *plan, message *why);
   /** @param poll  handed to the library; non-zero stops a task */
@@ -72,9 +76,23 @@ typedef struct kind {
    *  @returns 0, EXIT_RUN, EXIT_FILES; EXIT_STOPPED when the poll stopped it */
   int (*extra)(const study *s, const kind_plan *plan, const row_source *done, ric_poll poll, extra_rows *extra,
                message *why);
-} kind;
+  /** What `show` says of a result in sentences; NULL: nothing. */
+  result_card *show;
+  /** Exchanges a study that refers to an earlier result for the complete one; NULL: none does.
+   *  @param from  that the study was read from */
+  int (*resolve)(study **s, const study_source *from, message *why);
+};
 
-/** Kind of a study, by its name and its method; every kind that the schema accepts is here. */
+/** The schema of studies: every kind, every type of model, and their keys. */
+extern const schema studies;
+
+/** Reads a study file, and what it refers to. @returns as study_read_file, study_parse and `resolve` */
+int kind_read_study(const char *path, const char *const *sets, size_t set_count, study **out, message *why);
+
+/** What the kind of this name says of its results; NULL for nothing, and for no kind. */
+result_card *kind_card(const char *name);
+
+/** What evaluates a study. */
 const kind *kind_of(const study *s);
 
 /** Lays out a tail of a group: copies of columns as table_add takes them. Texts are borrowed. */
@@ -84,13 +102,5 @@ void kind_lay_out_tail(tail *to, const char *group, const char *row_axis, const 
 /** An `extra` for kinds without such a table. */
 int kind_no_extra(const study *s, const kind_plan *plan, const row_source *done, ric_poll poll, extra_rows *extra,
                   message *why);
-
-extern const kind kind_orbits;
-extern const kind kind_orbits_shooting;
-extern const kind kind_trajectory;
-extern const kind kind_branch;
-extern const kind kind_grazing;
-extern const kind kind_diagram;
-extern const kind kind_basin;
 
 #endif

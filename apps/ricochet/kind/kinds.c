@@ -1,15 +1,72 @@
+/* The list of kinds, and the schema of studies. */
 #include "kind.h"
 
+#include <stdlib.h>
 #include <string.h>
 
+#include "study/keys.h"
+
+/* A kind is a folder and a word here; its keys, if it has any of its own, a line in keys.inc. */
+#define KINDS(KIND) KIND(orbits) KIND(trajectory) KIND(branch) KIND(grazing) KIND(diagram) KIND(basin)
+
+#define DECLARE(name) extern const kind kind_##name;
+KINDS(DECLARE)
+
+#define CHOICE(name) &kind_##name.choice,
+static const schema_choice *const kinds[] = {KINDS(CHOICE) NULL};
+
+#define NAME(name) "|" #name
+#define KIND_NAMES (&(KINDS(NAME))[1])
+
+/* Why keys of the section `branch` cannot be swept. */
+#define STEERS .no_sweep = "it says how the branch is followed"
+#define STARTS .no_sweep = "it says where the branch starts"
+
+#define KEY KEY_DEFINE
+#include "top.inc"
+#include "keys.inc"
+#undef KEY
+
+static const study_key keys[] = {
+#define KEY KEY_LIST
+#include "top.inc"
+#include "model/models.inc"
+#include "keys.inc"
+#undef KEY
+};
+
+extern const char chapter_introduction[];
+
+const schema studies = {.keys = keys,
+                        .key_count = sizeof keys / sizeof *keys,
+                        .kinds = kinds,
+                        .models = models,
+                        .kind = KEY_KIND,
+                        .model = KEY_MODEL_TYPE,
+                        .introduction = chapter_introduction};
+
+int kind_read_study(const char *path, const char *const *sets, size_t set_count, study **out, message *why) {
+  char *text = NULL;
+  study_source from = {.schema = &studies, .name = path, .sets = sets, .set_count = set_count};
+  *out = NULL;
+  int code = study_read_file(path, &text, &from.length, why);
+  from.text = text;
+  if (!code)
+    code = study_parse(&from, out, why);
+  if (!code && kind_of(*out)->resolve)
+    code = kind_of(*out)->resolve(out, &from, why);
+  free(text);
+  return code;
+}
+
+result_card *kind_card(const char *name) {
+  const kind *found = (const kind *)schema_choice_of(kinds, name);
+  return found ? found->show : NULL;
+}
+
 const kind *kind_of(const study *s) {
-  static const kind *const kinds[] = {&kind_orbits,  &kind_orbits_shooting, &kind_trajectory, &kind_branch,
-                                      &kind_grazing, &kind_diagram,         &kind_basin};
-  for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++)
-    if (strcmp(kinds[i]->name, study_kind(s)) == 0 &&
-        (!kinds[i]->methods || schema_is_among(study_method(s), strlen(study_method(s)), kinds[i]->methods)))
-      return kinds[i];
-  return NULL;
+  const kind *found = (const kind *)study_kind_choice(s);
+  return found->variant ? found->variant(s) : found;
 }
 
 void kind_lay_out_tail(tail *to, const char *group, const char *row_axis, const char *offset, const char *meaning,

@@ -1,6 +1,7 @@
 /* _SC_PHYS_PAGES is not in POSIX. */
 #define _DEFAULT_SOURCE
 #include "machine.h"
+#include "keys.h"
 
 #include <libgen.h>
 #include <math.h>
@@ -40,7 +41,7 @@ int machine_refuse_size(const study *s, const char *what, double bytes, message 
   char place[256], needed[32], there[32];
   if (bytes <= machine_memory())
     return 0;
-  study_place(s, study_is_map(s) ? KEY_ITERATE_KEEP : KEY_MODEL_PARTICLES, place, sizeof place);
+  study_place(s, model_has(s, MODEL_MAP) ? KEY_ITERATE_KEEP : KEY_MODEL_PARTICLES, place, sizeof place);
   return refuse(why, EXIT_USAGE, "%s: %s of this size needs %s of memory, expected at most the %s of this machine",
                 place, what, machine_size(bytes, needed, sizeof needed),
                 machine_size(machine_memory(), there, sizeof there));

@@ -1,16 +1,11 @@
+/* What chains and Duffing chains have in common: a lattice. */
 #include "lattice_model.h"
 
 #include <math.h>
 #include <stdbool.h>
 #include <stdint.h>
+#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
-
-#include "chain_model.h"
-
-static bool is_duffing_chain(const study_values *v) {
-  return strcmp(value_word(v, KEY_MODEL_TYPE), "duffing_chain") == 0;
-}
 
 static bool lists_springs(const study_values *v) {
   static const study_key keys[] = {KEY_MODEL_STIFFNESS, KEY_MODEL_QUADRATIC, KEY_MODEL_CUBIC, KEY_MODEL_DAMPING};
@@ -22,7 +17,8 @@ static bool lists_springs(const study_values *v) {
 
 int lattice_model_init(lattice_model *m, const study_values *v) {
   const size_t n = (size_t)value_number(v, KEY_MODEL_PARTICLES, 0);
-  const bool masses = value_is_list(v, KEY_MODEL_MASS), springs = is_duffing_chain(v) || lists_springs(v);
+  const bool masses = value_is_list(v, KEY_MODEL_MASS);
+  const bool springs = model_of(study_values_of(v))->lists_springs || lists_springs(v);
   *m = (lattice_model){.lattice = ric_lattice_default(n, RIC_ENDS_PERIODIC)};
   m->force_cos = calloc(n, sizeof *m->force_cos);
   m->force_sin = calloc(n, sizeof *m->force_sin);
@@ -46,32 +42,11 @@ void lattice_model_clear(lattice_model *m) {
   *m = (lattice_model){0};
 }
 
-/* The spring of a particle: of a chain its own, of a Duffing chain the one before it. */
-static ric_spring spring_of(const study_values *v, size_t particle) {
+ric_spring lattice_model_spring(const study_values *v, size_t particle) {
   return (ric_spring){.linear = value_of_particle(v, KEY_MODEL_STIFFNESS, particle),
                       .quadratic = value_of_particle(v, KEY_MODEL_QUADRATIC, particle),
                       .cubic = value_of_particle(v, KEY_MODEL_CUBIC, particle),
                       .damping = value_of_particle(v, KEY_MODEL_DAMPING, particle)};
-}
-
-static ric_spring coupling(const study_values *v) {
-  return (ric_spring){.linear = value_number(v, KEY_MODEL_GAMMA, 0),
-                      .quadratic = value_number(v, KEY_MODEL_LINK_QUADRATIC, 0),
-                      .cubic = value_number(v, KEY_MODEL_LINK_CUBIC, 0),
-                      .damping = value_number(v, KEY_MODEL_LINK_DAMPING, 0)};
-}
-
-/* A Duffing chain is a lattice without on-site springs between two walls, from the second of which it is loose. */
-static void read_springs(lattice_model *m, const study_values *v) {
-  ric_lattice *lattice = &m->lattice;
-  const bool in_series = is_duffing_chain(v);
-  for (size_t i = 0; m->springs && i < lattice->particles; i++)
-    m->springs[i] = spring_of(v, i);
-  lattice->ends = in_series ? RIC_ENDS_FIXED : chain_model_ends(v);
-  lattice->links = in_series ? m->springs : NULL;
-  lattice->on_sites = in_series ? NULL : m->springs;
-  lattice->on_site = in_series ? (ric_spring){0} : spring_of(v, 0);
-  lattice->link = in_series ? (ric_spring){0} : coupling(v);
 }
 
 /* A cos(w t + phase) = A cos(phase) cos(w t) - A sin(phase) sin(w t); no force at all is cheaper than one of zeros. */
@@ -109,7 +84,9 @@ void lattice_model_read(lattice_model *m, const study_values *v) {
   for (size_t i = 0; m->masses && i < m->lattice.particles; i++)
     m->masses[i] = value_number(v, KEY_MODEL_MASS, i);
   m->lattice.masses = m->masses;
-  read_springs(m, v);
+  for (size_t i = 0; m->springs && i < m->lattice.particles; i++)
+    m->springs[i] = lattice_model_spring(v, i);
+  model_of(study_values_of(v))->read_springs(m, v);
   read_force(m, v);
   m->obstacle_count = 0;
   add_obstacles(m, v, KEY_MODEL_FLOOR, +1);
@@ -134,4 +111,49 @@ ric_status lattice_model_hits(const lattice_model *m, const study_values *v, stu
       return ric_fail(error, RIC_EINVAL, "particle %zu has no obstacle to hit", particle);
   }
   return RIC_OK;
+}
+
+/* --- its keys --- */
+
+size_t lattice_particles(const study *s) {
+  return (size_t)study_number(s, KEY_MODEL_PARTICLES);
+}
+
+bool lattice_has_obstacle(const study *s, size_t particle) {
+  static const study_key sides[] = {KEY_MODEL_FLOOR, KEY_MODEL_WALL};
+  bool has = false;
+  for (size_t i = 0; i < sizeof sides / sizeof *sides; i++) {
+    const typed_value *at = study_value(s, sides[i]);
+    const long item = study_item(s, sides[i], particle);
+    has = has || (item >= 0 && (size_t)item < at->count &&
+                  (at->numbers[item] > -INFINITY || sweep_over(s, sides[i], at->list ? item : -1)));
+  }
+  return has;
+}
+
+static int refuse_particle(const study *s, const document *d, int node, const char *label, double particle,
+                           message *why) {
+  return document_refuse(d, node, why, "%s = %.0f is out of range, expected a particle from 0 to %zu", label, particle,
+                         lattice_particles(s) - 1);
+}
+
+int lattice_check_particle(const study *s, const document *d, study_key key, size_t i, message *why) {
+  char label[64];
+  const double particle = study_value(s, key)->numbers[i];
+  if (particle < (double)lattice_particles(s))
+    return 0;
+  snprintf(label, sizeof label, "%s[%zu]", key->path, i);
+  return refuse_particle(s, d, typed_item_node(d, study_value(s, key), i), label, particle, why);
+}
+
+int lattice_check_swept_particles(const study *s, const document *d, study_key key, message *why) {
+  char label[128];
+  for (size_t i = 0; i < s->sweep_count; i++) {
+    const sweep_entry *e = &s->sweeps[i];
+    snprintf(label, sizeof label, "swept %s", e->view.name);
+    for (size_t j = 0; e->view.key == key && j < e->view.points; j++)
+      if (!(e->values[j] < (double)lattice_particles(s)))
+        return refuse_particle(s, d, sweep_value_node(d, e, j), label, e->values[j], why);
+  }
+  return 0;
 }

@@ -6,7 +6,7 @@
 
 #include <ricochet/ricochet.h>
 
-#include "study/study.h"
+#include "model.h"
 
 /** A lattice with the storage of its lists. */
 typedef struct lattice_model {
@@ -35,5 +35,18 @@ size_t lattice_model_obstacle(const lattice_model *m, size_t particle, int side)
  *  @param hits  set, one for each. @returns RIC_EINVAL for a particle without an obstacle */
 ric_status lattice_model_hits(const lattice_model *m, const study_values *v, study_key key, size_t *hits,
                               ric_error *error);
+
+/** The spring of a particle: of a chain its own, of a Duffing chain the one before it. */
+ric_spring lattice_model_spring(const study_values *v, size_t particle);
+
+/* What checks of a study ask of its lattice. */
+
+size_t lattice_particles(const study *s);
+/** Whether a particle has a floor or a wall, at some point of a sweep at least. */
+bool lattice_has_obstacle(const study *s, size_t particle);
+/** Refuses element `i` of a list that is no particle of the lattice, as "orbit.at_start[2]"; swept values that are
+ *  none. */
+int lattice_check_particle(const study *s, const document *d, study_key key, size_t i, message *why);
+int lattice_check_swept_particles(const study *s, const document *d, study_key key, message *why);
 
 #endif

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static int put(const place *at, hid_t object, const char *name, hid_t file_type, hid_t memory_type, hid_t space,
+static int put(const file_place *at, hid_t object, const char *name, hid_t file_type, hid_t memory_type, hid_t space,
                const void *value) {
   int code = 0;
   hid_t attribute = H5I_INVALID_HID;
@@ -17,7 +17,7 @@ out:
   return hdf5_close(at, attribute, code);
 }
 
-static int put_scalar(const place *at, hid_t object, const char *name, hid_t file_type, hid_t memory_type,
+static int put_scalar(const file_place *at, hid_t object, const char *name, hid_t file_type, hid_t memory_type,
                       const void *value) {
   int code = 0;
   hid_t space = H5I_INVALID_HID;
@@ -27,7 +27,7 @@ out:
   return hdf5_close(at, space, code);
 }
 
-int attribute_put_list(const place *at, hid_t object, const char *name, hid_t file_type, hid_t memory_type,
+int attribute_put_list(const file_place *at, hid_t object, const char *name, hid_t file_type, hid_t memory_type,
                        size_t count, const void *values) {
   int code = 0;
   hid_t space = H5I_INVALID_HID;
@@ -54,7 +54,7 @@ static H5T_cset_t character_set(const char *text) {
   return H5T_CSET_ASCII;
 }
 
-int attribute_put_text(const place *at, hid_t object, const char *name, const char *text) {
+int attribute_put_text(const file_place *at, hid_t object, const char *name, const char *text) {
   int code = 0;
   hid_t type = H5I_INVALID_HID;
   if (!text)
@@ -72,24 +72,24 @@ static void checksum_of(const char *name, const char *text, char other[64], char
   snprintf(sum, 17, "%016llx", (unsigned long long)digest_bytes(0, text, strlen(text)));
 }
 
-int attribute_put_checked_text(const place *at, hid_t object, const char *name, const char *text) {
+int attribute_put_checked_text(const file_place *at, hid_t object, const char *name, const char *text) {
   char other[64], sum[17];
   checksum_of(name, text, other, sum);
   int code = attribute_put_text(at, object, name, text);
   return code ? code : attribute_put_text(at, object, other, sum);
 }
 
-int attribute_put_integer(const place *at, hid_t object, const char *name, int64_t value) {
+int attribute_put_integer(const file_place *at, hid_t object, const char *name, int64_t value) {
   return put_scalar(at, object, name, H5T_STD_I64LE, H5T_NATIVE_INT64, &value);
 }
 
-int attribute_put_number(const place *at, hid_t object, const char *name, double value) {
+int attribute_put_number(const file_place *at, hid_t object, const char *name, double value) {
   return put_scalar(at, object, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, &value);
 }
 
 /* --- reading --- */
 
-int attribute_text(const place *at, hid_t object, const char *name, char **text) {
+int attribute_text(const file_place *at, hid_t object, const char *name, char **text) {
   int code = 0;
   hid_t attribute = H5I_INVALID_HID, type = H5I_INVALID_HID, space = H5I_INVALID_HID;
   *text = NULL;
@@ -117,7 +117,7 @@ out:
   return code;
 }
 
-int attribute_checked_text(const place *at, hid_t object, const char *name, char **text) {
+int attribute_checked_text(const file_place *at, hid_t object, const char *name, char **text) {
   char other[64], sum[17], stored[17] = "";
   int code = attribute_text(at, object, name, text);
   if (code)
@@ -134,7 +134,7 @@ int attribute_checked_text(const place *at, hid_t object, const char *name, char
   return code;
 }
 
-int attribute_text_into(const place *at, hid_t object, const char *name, char *text, size_t size) {
+int attribute_text_into(const file_place *at, hid_t object, const char *name, char *text, size_t size) {
   char *whole;
   int code = attribute_text(at, object, name, &whole);
   if (!code)
@@ -143,7 +143,7 @@ int attribute_text_into(const place *at, hid_t object, const char *name, char *t
   return code;
 }
 
-static int read_scalar(const place *at, hid_t object, const char *name, hid_t memory_type, void *value) {
+static int read_scalar(const file_place *at, hid_t object, const char *name, hid_t memory_type, void *value) {
   int code = 0;
   hid_t attribute = H5I_INVALID_HID, space = H5I_INVALID_HID;
   HDF5_TRY(at, attribute = H5Aopen(object, name, H5P_DEFAULT), "read the attribute %s", name);
@@ -158,10 +158,10 @@ out:
   return hdf5_close(at, attribute, code);
 }
 
-int attribute_integer(const place *at, hid_t object, const char *name, int64_t *value) {
+int attribute_integer(const file_place *at, hid_t object, const char *name, int64_t *value) {
   return read_scalar(at, object, name, H5T_NATIVE_INT64, value);
 }
 
-int attribute_number(const place *at, hid_t object, const char *name, double *value) {
+int attribute_number(const file_place *at, hid_t object, const char *name, double *value) {
   return read_scalar(at, object, name, H5T_NATIVE_DOUBLE, value);
 }

@@ -13,13 +13,13 @@ enum { ATTRIBUTE_MOST_COMPACT = 64 };
 /* Writing. @returns 0 or EXIT_FILES. */
 
 /** Text of fixed length, which readers cannot trip over; ASCII, or UTF-8 where a byte needs it. NULL counts as "". */
-int attribute_put_text(const place *at, hid_t object, const char *name, const char *text);
-int attribute_put_integer(const place *at, hid_t object, const char *name, int64_t value);
-int attribute_put_number(const place *at, hid_t object, const char *name, double value);
+int attribute_put_text(const file_place *at, hid_t object, const char *name, const char *text);
+int attribute_put_integer(const file_place *at, hid_t object, const char *name, int64_t value);
+int attribute_put_number(const file_place *at, hid_t object, const char *name, double value);
 /** Text with a digest of its own beside it, "NAME_checksum": HDF5 keeps text of 64 kB or more without a checksum. */
-int attribute_put_checked_text(const place *at, hid_t object, const char *name, const char *text);
+int attribute_put_checked_text(const file_place *at, hid_t object, const char *name, const char *text);
 /** A list of any type. @param count  at least 1 */
-int attribute_put_list(const place *at, hid_t object, const char *name, hid_t file_type, hid_t memory_type,
+int attribute_put_list(const file_place *at, hid_t object, const char *name, hid_t file_type, hid_t memory_type,
                        size_t count, const void *values);
 
 /** The file's type for text of `bytes` bytes, NUL padded, closed by the caller; negative on failure. */
@@ -28,12 +28,12 @@ hid_t attribute_text_type(size_t bytes, H5T_cset_t set);
 /* Reading. @returns 0 or EXIT_FILES. */
 
 /** @param text  set to malloc'd text with a terminating 0; the caller frees; NULL on failure */
-int attribute_text(const place *at, hid_t object, const char *name, char **text);
+int attribute_text(const file_place *at, hid_t object, const char *name, char **text);
 /** Text written by attribute_put_checked_text, refused when it does not match its checksum. */
-int attribute_checked_text(const place *at, hid_t object, const char *name, char **text);
+int attribute_checked_text(const file_place *at, hid_t object, const char *name, char **text);
 /** Into a buffer of `size` bytes, cut to fit. */
-int attribute_text_into(const place *at, hid_t object, const char *name, char *text, size_t size);
-int attribute_integer(const place *at, hid_t object, const char *name, int64_t *value);
-int attribute_number(const place *at, hid_t object, const char *name, double *value);
+int attribute_text_into(const file_place *at, hid_t object, const char *name, char *text, size_t size);
+int attribute_integer(const file_place *at, hid_t object, const char *name, int64_t *value);
+int attribute_number(const file_place *at, hid_t object, const char *name, double *value);
 
 #endif

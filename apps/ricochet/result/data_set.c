@@ -58,7 +58,7 @@ hid_t data_set_type(const column *c) {
 
 /* --- axes --- */
 
-static int fill_scale(const place *at, hid_t set, const plan_scale *scale) {
+static int fill_scale(const file_place *at, hid_t set, const plan_scale *scale) {
   int code = 0;
   hid_t space = H5I_INVALID_HID, memory = H5I_INVALID_HID;
   enum { BLOCK = 8192 };
@@ -81,8 +81,8 @@ out:
   return hdf5_close(at, space, code);
 }
 
-static int put_description(const place *at, hid_t set, const char *units, const char *long_name, const char *source,
-                           const char *axes) {
+static int put_description(const file_place *at, hid_t set, const char *units, const char *long_name,
+                           const char *source, const char *axes) {
   int code = attribute_put_text(at, set, "units", units);
   if (!code)
     code = attribute_put_text(at, set, "long_name", long_name);
@@ -93,7 +93,7 @@ static int put_description(const place *at, hid_t set, const char *units, const 
   return code;
 }
 
-int data_set_create_scale(const place *at, hid_t file, const plan_scale *scale) {
+int data_set_create_scale(const file_place *at, hid_t file, const plan_scale *scale) {
   int code = 0;
   hid_t space = H5I_INVALID_HID, list = H5I_INVALID_HID, set = H5I_INVALID_HID;
   const table row = {.row_bytes = sizeof(int64_t)};
@@ -116,7 +116,7 @@ out:
   return hdf5_close(at, space, code);
 }
 
-static int attach_scale(const place *at, hid_t file, hid_t set, const char *name, unsigned axis) {
+static int attach_scale(const file_place *at, hid_t file, hid_t set, const char *name, unsigned axis) {
   int code = 0;
   hid_t scale = H5I_INVALID_HID;
   HDF5_TRY(at, scale = H5Dopen2(file, name, H5P_DEFAULT), "open /%s", name);
@@ -128,7 +128,7 @@ out:
 /* --- columns --- */
 
 /* The names of an enum once more, as the CF conventions have them: for readers that see plain integers. */
-static int put_flag_meanings(const place *at, hid_t set, const column *c) {
+static int put_flag_meanings(const file_place *at, hid_t set, const column *c) {
   enum { MOST = 128 };
   signed char values[MOST];
   message words = {""};
@@ -144,14 +144,14 @@ static int put_flag_meanings(const place *at, hid_t set, const column *c) {
   return code ? code : attribute_put_text(at, set, "flag_meanings", words.text);
 }
 
-static int put_attributes(const place *at, hid_t set, const column *c) {
+static int put_attributes(const file_place *at, hid_t set, const column *c) {
   int code = 0;
   for (int i = 0; !code && i < COLUMN_MOST_ATTRIBUTES && c->attributes[i].name; i++)
     code = attribute_put_number(at, set, c->attributes[i].name, c->attributes[i].value);
   return code;
 }
 
-static int describe_column(const place *at, hid_t file, hid_t set, const table *t, const column *c) {
+static int describe_column(const file_place *at, hid_t file, hid_t set, const table *t, const column *c) {
   char axes[256];
   snprintf(axes, sizeof axes, "%s", t->row_axis);
   for (int i = 0; i < column_axes(c); i++)
@@ -187,7 +187,7 @@ static void chunk_of(const result_table *t, const column *c, hsize_t *chunk) {
   to_sizes(extents, chunk);
 }
 
-int data_set_create(const place *at, hid_t file, hid_t group, const result_table *t, const column *c) {
+int data_set_create(const file_place *at, hid_t file, hid_t group, const result_table *t, const column *c) {
   int code = 0;
   hid_t space = H5I_INVALID_HID, type = H5I_INVALID_HID, list = H5I_INVALID_HID, set = H5I_INVALID_HID;
   const char *in = t->layout->group;

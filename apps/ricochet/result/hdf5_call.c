@@ -31,7 +31,7 @@ static void keep_system_words(message *reason) {
   reason->text[length] = '\0';
 }
 
-int hdf5_refuse(const place *at, const char *what, ...) {
+int hdf5_refuse(const file_place *at, const char *what, ...) {
   message reason = {"unknown reason"}, task;
   (void)H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, take_reason, &reason);
   keep_system_words(&reason);
@@ -63,7 +63,7 @@ static herr_t close_by_type(hid_t handle) {
   }
 }
 
-int hdf5_close(const place *at, hid_t handle, int code) {
+int hdf5_close(const file_place *at, hid_t handle, int code) {
   if (handle < 0 || close_by_type(handle) >= 0 || code)
     return code;
   return hdf5_refuse(at, "close it");

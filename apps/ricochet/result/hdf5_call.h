@@ -11,23 +11,17 @@
 
 #include "../base/message.h"
 
-/** The file that messages name, and where they go. */
-typedef struct place {
-  const char *path;
-  message *why;
-} place;
-
 /** Keeps HDF5 from printing its error stack. Called by every entry point of this room. */
 void hdf5_quiet(void);
 
 /** Formats "PATH: cannot WHAT: REASON", the reason being HDF5's innermost description of its last failure.
  *  @returns EXIT_FILES */
-int hdf5_refuse(const place *at, const char *what, ...) __attribute__((format(printf, 2, 3)));
+int hdf5_refuse(const file_place *at, const char *what, ...) __attribute__((format(printf, 2, 3)));
 
 /** Closes a handle of any kind; a negative one is none.
  *  @param code  of the work done with it: a failure there keeps its message, a failing close becomes one otherwise
  *  @returns `code`, or EXIT_FILES when only the close failed */
-int hdf5_close(const place *at, hid_t handle, int code);
+int hdf5_close(const file_place *at, hid_t handle, int code);
 
 /** Makes `call`; a negative result sets `code` and jumps to `out` (both the calling function's own). */
 #define HDF5_TRY(at, call, ...)                                                                                        \

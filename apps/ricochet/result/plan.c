@@ -22,7 +22,7 @@ static void lay_out_sweep(plan *p) {
   p->sweep = (table){.group = "sweep", .row_axis = "task"};
   for (size_t k = 0; k < study_sweeps(s); k++) {
     const study_sweep *sweep = study_sweep_at(s, k);
-    const schema_entry *entry = schema_row(sweep->key);
+    const study_key entry = sweep->key;
     p->sweep.columns[p->sweep.column_count++] = (column){
         .name = sweep->name,
         .type = COLUMN_F64,

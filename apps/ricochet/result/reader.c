@@ -8,27 +8,35 @@
 #include <sys/stat.h>
 
 #include "attribute.h"
+#include "hdf5_call.h"
 #include "result.h"
 
 /* --- the file --- */
 
-static int check_creator(const place *at, hid_t file) {
+static int check_creator(const file_place *at, hid_t file) {
   char creator[64] = "";
-  int64_t schema = 0;
+  int64_t version = 0;
   htri_t marked = H5Aexists(file, "creator");
   int code = marked > 0 ? attribute_text_into(at, file, "creator", creator, sizeof creator) : 0;
   if (code)
     return code;
   if (strcmp(creator, RESULT_CREATOR) != 0)
     return refuse(at->why, EXIT_FILES, "%s: no result of ricochet (attribute creator = \"%s\")", at->path, creator);
-  code = attribute_integer(at, file, "schema_version", &schema);
-  if (!code && (schema < 1 || schema > RESULT_SCHEMA_VERSION))
+  code = attribute_integer(at, file, "schema_version", &version);
+  if (!code && (version < 1 || version > RESULT_SCHEMA_VERSION))
     code = refuse(at->why, EXIT_FILES, "%s: schema_version = %lld, this program reads 1 to %d", at->path,
-                  (long long)schema, RESULT_SCHEMA_VERSION);
+                  (long long)version, RESULT_SCHEMA_VERSION);
   return code;
 }
 
-int reader_open(const place *at, const char *path, hid_t *file) {
+_Static_assert(sizeof(reader_handle) == sizeof(hid_t), "handles are those of HDF5");
+_Static_assert((int)READER_MAX_RANK == H5S_MAX_RANK, "every data set has a place for its shape");
+
+int reader_close(const file_place *at, reader_handle file, int code) {
+  return hdf5_close(at, file, code);
+}
+
+int reader_open(const file_place *at, const char *path, reader_handle *file) {
   int code = 0;
   struct stat about;
   htri_t known;
@@ -53,7 +61,7 @@ out:
 
 /* --- names --- */
 
-static int link_name(const place *at, hid_t group, hsize_t i, char **name) {
+static int link_name(const file_place *at, hid_t group, hsize_t i, char **name) {
   ssize_t length = H5Lget_name_by_idx(group, ".", H5_INDEX_CRT_ORDER, H5_ITER_INC, i, NULL, 0, H5P_DEFAULT);
   if (length < 0)
     return hdf5_refuse(at, "list it");
@@ -68,7 +76,7 @@ static int link_name(const place *at, hid_t group, hsize_t i, char **name) {
 }
 
 /* Appends the i-th link when it leads to an object of the type asked for. */
-static int list_link(const place *at, hid_t group, hsize_t i, H5I_type_t type, reader_names *names) {
+static int list_link(const file_place *at, hid_t group, hsize_t i, H5I_type_t type, reader_names *names) {
   char *name = NULL;
   int code = link_name(at, group, i, &name);
   if (code)
@@ -83,7 +91,8 @@ static int list_link(const place *at, hid_t group, hsize_t i, H5I_type_t type, r
   return hdf5_close(at, object, code);
 }
 
-int reader_list(const place *at, hid_t group, H5I_type_t type, reader_names *names) {
+int reader_list(const file_place *at, reader_handle group, bool groups, reader_names *names) {
+  const H5I_type_t type = groups ? H5I_GROUP : H5I_DATASET;
   H5G_info_t info;
   *names = (reader_names){0};
   if (H5Gget_info(group, &info) < 0)
@@ -108,7 +117,7 @@ void reader_names_clear(reader_names *names) {
 
 /* --- data sets --- */
 
-static int read_words(const place *at, reader_set *s) {
+static int read_words(const file_place *at, reader_set *s) {
   int count = H5Tget_nmembers(s->memory);
   if (count < 0 || H5Tget_size(s->memory) != 1)
     return refuse(at->why, EXIT_FILES, "%s: %s is an enum of another size than one byte", at->path, s->name);
@@ -157,7 +166,7 @@ static reader_type type_of(hid_t type) {
   }
 }
 
-static int read_type(const place *at, reader_set *s) {
+static int read_type(const file_place *at, reader_set *s) {
   int code = 0;
   hid_t type = H5I_INVALID_HID;
   HDF5_TRY(at, type = H5Dget_type(s->id), "read the type of %s", s->name);
@@ -174,16 +183,19 @@ out:
   return hdf5_close(at, type, code);
 }
 
-static int read_shape(const place *at, reader_set *s) {
+static int read_shape(const file_place *at, reader_set *s) {
   int code = 0;
   hid_t space = H5I_INVALID_HID;
+  hsize_t shape[H5S_MAX_RANK];
   HDF5_TRY(at, space = H5Dget_space(s->id), "read the shape of %s", s->name);
-  HDF5_TRY(at, s->rank = H5Sget_simple_extent_dims(space, s->shape, NULL), "read the shape of %s", s->name);
+  HDF5_TRY(at, s->rank = H5Sget_simple_extent_dims(space, shape, NULL), "read the shape of %s", s->name);
+  for (int i = 0; i < s->rank; i++)
+    s->shape[i] = shape[i];
 out:
   return hdf5_close(at, space, code);
 }
 
-static int open_set(const place *at, hid_t group, reader_set *s) {
+static int open_set(const file_place *at, hid_t group, reader_set *s) {
   s->id = H5Dopen2(group, s->name, H5P_DEFAULT);
   if (s->id < 0)
     return hdf5_refuse(at, "open %s", s->name);
@@ -197,9 +209,9 @@ static int open_set(const place *at, hid_t group, reader_set *s) {
   return code ? code : attribute_text_into(at, s->id, "long_name", s->long_name, sizeof s->long_name);
 }
 
-static int open_sets(const place *at, hid_t group, reader_group *g) {
+static int open_sets(const file_place *at, hid_t group, reader_group *g) {
   reader_names names;
-  int code = reader_list(at, group, H5I_DATASET, &names);
+  int code = reader_list(at, group, false, &names);
   if (code)
     return code;
   g->sets = calloc(names.count + 1, sizeof *g->sets);
@@ -216,7 +228,7 @@ static int open_sets(const place *at, hid_t group, reader_group *g) {
   return code;
 }
 
-int reader_group_open(const place *at, hid_t file, const char *name, reader_group *g) {
+int reader_group_open(const file_place *at, reader_handle file, const char *name, reader_group *g) {
   *g = (reader_group){.name = strdup(name)};
   if (!g->name)
     return refuse(at->why, EXIT_RUN, "%s: out of memory", at->path);
@@ -228,7 +240,7 @@ int reader_group_open(const place *at, hid_t file, const char *name, reader_grou
 
 void reader_group_clear(reader_group *g) {
   message ignored; /* nothing was written through these handles */
-  const place nowhere = {"", &ignored};
+  const file_place nowhere = {"", &ignored};
   for (size_t i = 0; i < g->count; i++) {
     reader_set *s = &g->sets[i];
     (void)hdf5_close(&nowhere, s->memory, 0);
@@ -240,6 +252,17 @@ void reader_group_clear(reader_group *g) {
   free(g->sets);
   free(g->name);
   *g = (reader_group){0};
+}
+
+bool reader_has(reader_handle file, const char *name) {
+  return H5Lexists(file, name, H5P_DEFAULT) > 0;
+}
+
+const reader_set *reader_find(const reader_group *g, const char *name) {
+  for (size_t i = 0; i < g->count; i++)
+    if (strcmp(g->sets[i].name, name) == 0)
+      return &g->sets[i];
+  return NULL;
 }
 
 void reader_row_axis(const reader_set *s, char *axis) {
@@ -254,7 +277,7 @@ bool reader_is_column(const reader_set *s, const char *axis) {
 /* --- values --- */
 
 /* @param first, count  [rank] */
-static int read_part(const place *at, const reader_set *s, const hsize_t *first, const hsize_t *count,
+static int read_part(const file_place *at, const reader_set *s, const hsize_t *first, const hsize_t *count,
                      unsigned char *values) {
   int code = 0;
   hid_t in_file = H5I_INVALID_HID, in_memory = H5I_INVALID_HID;
@@ -267,11 +290,11 @@ out:
   return hdf5_close(at, in_file, code);
 }
 
-int reader_rows(const place *at, const reader_set *s, hsize_t first, hsize_t count, unsigned char *values) {
-  return read_part(at, s, &first, &count, values);
+int reader_rows(const file_place *at, const reader_set *s, uint64_t first, uint64_t count, unsigned char *values) {
+  return read_part(at, s, (hsize_t[]){first}, (hsize_t[]){count}, values);
 }
 
-int reader_row(const place *at, const reader_set *s, hsize_t row, unsigned char *values) {
+int reader_row(const file_place *at, const reader_set *s, uint64_t row, unsigned char *values) {
   return read_part(at, s, (hsize_t[]){row, 0}, (hsize_t[]){1, s->shape[1]}, values);
 }
 
@@ -329,4 +352,16 @@ void reader_value(const reader_set *s, const unsigned char *value, int digits, c
     return; /* one is enough to say that there is no number */
   size_t used = strlen(text);
   snprintf(text + used, size - used, "%s%si", imaginary[0] == '-' ? "" : "+", imaginary);
+}
+
+int reader_cell(const file_place *at, const reader_set *s, uint64_t row, int digits, char *text, size_t size) {
+  unsigned char *value = s && s->rank == 1 && row < s->shape[0] ? calloc(1, s->value_bytes + 1) : NULL;
+  int code = 0;
+  *text = '\0';
+  if (value)
+    code = reader_rows(at, s, row, 1, value);
+  if (value && !code)
+    reader_value(s, value, digits, text, size);
+  free(value);
+  return code;
 }

@@ -5,20 +5,26 @@
 #define RICOCHET_APP_READER_H
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
-#include "hdf5_call.h"
+#include "../base/message.h"
+
+/** HDF5's hid_t, so that kinds can read their results without HDF5. */
+typedef int64_t reader_handle;
 
 /** Opens a result for reading. @returns 0, or EXIT_FILES when it is none, of a later schema, or cut short. */
-int reader_open(const place *at, const char *path, hid_t *file);
+int reader_open(const file_place *at, const char *path, reader_handle *file);
+/** @param code  of the work done with it  @returns `code`, or EXIT_FILES when only the close failed */
+int reader_close(const file_place *at, reader_handle file, int code);
 
-/** Names of the links in a group that lead to objects of one type (H5I_GROUP or H5I_DATASET), in the order made. */
+/** Names of the links in a group that lead to groups, or to data sets, in the order made. */
 typedef struct reader_names {
   char **at;
   size_t count;
 } reader_names;
 
-int reader_list(const place *at, hid_t group, H5I_type_t type, reader_names *names);
+int reader_list(const file_place *at, reader_handle group, bool groups, reader_names *names);
 void reader_names_clear(reader_names *names);
 
 typedef enum reader_type {
@@ -30,14 +36,14 @@ typedef enum reader_type {
   READER_OTHER
 } reader_type;
 
-enum { READER_MAX_WORDS = 128 };
+enum { READER_MAX_WORDS = 128, READER_MAX_RANK = 32 };
 
 typedef struct reader_set {
-  hid_t id, memory; /* data set; type of its values in memory */
+  reader_handle id, memory; /* data set; type of its values in memory */
   reader_type type;
   size_t value_bytes; /* in memory */
   int rank;
-  hsize_t shape[H5S_MAX_RANK];
+  uint64_t shape[READER_MAX_RANK];
   char *name;
   char axes[256], units[64], long_name[256];
   char *words[READER_MAX_WORDS]; /* of an enum, by value; NULL where it has none */
@@ -50,8 +56,12 @@ typedef struct reader_group {
 } reader_group;
 
 /** Opens a group with all its data sets. @param g  zeroed; reader_group_clear also after a failure */
-int reader_group_open(const place *at, hid_t file, const char *name, reader_group *g);
+int reader_group_open(const file_place *at, reader_handle file, const char *name, reader_group *g);
 void reader_group_clear(reader_group *g);
+/** Whether the file has a group of this name. */
+bool reader_has(reader_handle file, const char *name);
+/** The data set of a name, NULL when the group has none. */
+const reader_set *reader_find(const reader_group *g, const char *name);
 
 /** Whether the first axis of the set is `axis`, and its length is one value per row of it. */
 bool reader_is_column(const reader_set *s, const char *axis);
@@ -61,11 +71,11 @@ void reader_row_axis(const reader_set *s, char *axis);
 
 /** Reads rows [first, first + count) of a set with one value per row.
  *  @param values  [count][value_bytes] */
-int reader_rows(const place *at, const reader_set *s, hsize_t first, hsize_t count, unsigned char *values);
+int reader_rows(const file_place *at, const reader_set *s, uint64_t first, uint64_t count, unsigned char *values);
 
 /** Reads one row of a set with two axes.
  *  @param values  [shape[1]][value_bytes] */
-int reader_row(const place *at, const reader_set *s, hsize_t row, unsigned char *values);
+int reader_row(const file_place *at, const reader_set *s, uint64_t row, unsigned char *values);
 
 /** Numbers that a value of the set consists of: real and imaginary part of a complex one, else 1. */
 int reader_parts(const reader_set *s);
@@ -76,6 +86,9 @@ void reader_part_name(const reader_set *s, int part, char *text, size_t size);
 /** A part of a value as text: numbers with `digits` significant digits, enums by name.
  *  @param text  [size], cut to fit */
 void reader_part(const reader_set *s, const unsigned char *value, int part, int digits, char *text, size_t size);
+
+/** The value in one row of a set with one value per row, as text; "" where there is none. @param text  [size] */
+int reader_cell(const file_place *at, const reader_set *s, uint64_t row, int digits, char *text, size_t size);
 
 /** A whole value as text, complex ones as "0.5-2i". */
 void reader_value(const reader_set *s, const unsigned char *value, int digits, char *text, size_t size);

@@ -6,7 +6,7 @@
  * root attributes `file_time` and `command`. h5py reads it, and xarray group by group, with no option and no helper;
  * units are those of science ("s"), for xarray turns "seconds" into dates.
  *
- * Who does what: plan.h cuts the tables into chunks and blocks, skeleton.h makes all metadata in memory, space.h puts
+ * Who does what: plan.h cuts the tables into chunks and blocks, skeleton.h makes all metadata in memory, it puts
  * them on the disk with space for all rows, rows.h has every rank write its blocks, verify.h reads them back. */
 #ifndef RICOCHET_APP_RESULT_H
 #define RICOCHET_APP_RESULT_H
@@ -17,6 +17,7 @@
 #include "../base/message.h"
 #include "../study/study.h"
 #include "../base/table.h"
+#include "reader.h"
 
 #define RESULT_CREATOR "ricochet" /* root attribute `creator`: the file is ours */
 enum { RESULT_SCHEMA_VERSION = 1 };
@@ -74,10 +75,14 @@ int result_study_digest(const char *path, uint64_t *digest, message *why);
 /* What `show` prints on standard output, on this process alone, without MPI_Init. @returns 0; EXIT_FILES when the file
  * is damaged or not ours, or the output cannot be written. */
 
-/** Prints what is in the file: creator, study title, sweeps with their ranges, cards of grazing motions, every group
+/** What a kind says of its results in sentences. @returns 0, EXIT_FILES or EXIT_RUN */
+typedef int result_card(const file_place *at, reader_handle file);
+
+/** Prints what is in the file: creator, study title, sweeps with their ranges, the cards of its groups, every group
  * with its data sets (type, shape, units, long name), counts of every enum column, and up to 40 rows of tables that
- * have no row per task, such as special points. */
-int result_show(const char *path, message *why);
+ * have no row per task, such as special points.
+ *  @param card_of  the card of a group, NULL for none */
+int result_show(const char *path, result_card *(*card_of)(const char *group), message *why);
 
 /** Prints a group as CSV (RFC 4180, numbers to 17 digits, enums by name, a row of names first): the swept parameters
  * and every column with one value per task. A group without a row per task comes with the rows of its first axis, and

@@ -13,10 +13,21 @@ typedef struct skeleton_image {
 
 /** Makes the skeleton in memory: all groups, attributes, axes and empty data sets. The caller frees `image->bytes`,
  * also after a failure. */
-int skeleton_make(const plan *p, const place *at, skeleton_image *image);
+int skeleton_make(const plan *p, const file_place *at, skeleton_image *image);
 
 /** Access properties of every writer of the file: the format of HDF5 1.10 and nothing older, so that metadata have
  *  checksums. Negative on failure. */
 hid_t skeleton_access(void);
+
+/* The result file on the disk before its rows are written: skeleton, and space for everything.
+ *
+ * HDF5 does not survive a disk that fills up under it: a close that cannot flush leaves a broken handle behind, which
+ * crashes the process when MPI_Finalize shuts HDF5 down, and in parallel the other ranks wait for ever. So HDF5 never
+ * meets that disk: the skeleton is made in memory and written like any bytes, and the file system is asked to reserve
+ * all the space there will ever be. A full disk, a quota or a limit on the file's size shows there, in calls that fail
+ * cleanly. Then HDF5 lays all chunks out, so that ranks writing rows only overwrite bytes and change no metadata. */
+
+/** Creates `p->partial` on this process alone, all data sets laid out and filled with zeros. */
+int space_create(const plan *p, const file_place *at);
 
 #endif

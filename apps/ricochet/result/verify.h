@@ -3,13 +3,23 @@
 #define RICOCHET_APP_VERIFY_H
 
 #include "hdf5_call.h"
-#include "plan.h"
+#include "skeleton.h"
 
 /** Part of the verification of a file, so that several processes can share the reading: process `part` of `parts`
  *  checks all metadata (data sets chunked with a checksum, every axis attached to its scale) and reads every
  *  `parts`-th slab of data.
  *  @param path  of the file to open; `at` names the one for messages
  *  @param expected  what the file must hold at least, by name and shape; NULL when nothing is known about it */
-int verify_part(const place *at, const char *path, const plan *expected, int part, int parts);
+int verify_part(const file_place *at, const char *path, const plan *expected, int part, int parts);
+
+/* Checksums for the one part of a result to which HDF5 gives none: its global heaps.
+ *
+ * They hold the references from data sets to the scales of their axes, and HDF5 1.10 loops for ever when it reads a
+ * heap with a damaged object size. The writer finds the heaps (collections of bytes that begin with "GCOL") in the
+ * finished skeleton and stores where they are, with a digest of each, in the root attribute `heap_checksums`, int64
+ * [heaps][3]: address, size, FNV-1a of the bytes. A reader compares them before it asks HDF5 for anything in there. */
+
+/** Stores the checksums of the heaps in `image` in the file that was made of it. */
+int heap_put_checksums(const file_place *at, hid_t file, const skeleton_image *image);
 
 #endif

@@ -11,7 +11,6 @@
 #include "../run/ranks.h"
 #include "hdf5_call.h"
 #include "plan.h"
-#include "space.h"
 #include "verify.h"
 #include "data_set.h"
 #include "skeleton.h"
@@ -20,7 +19,7 @@
 
 /* A table on its way to the file: its data sets, and one block of rows. */
 typedef struct table_writer {
-  const place *at;
+  const file_place *at;
   const result_table *from;
   uint64_t block;        /* rows */
   unsigned char *rows;   /* [block][row_bytes] */
@@ -108,7 +107,7 @@ static int write_block(const table_writer *t, uint64_t first) {
   return code;
 }
 
-static int write_table(const place *at, hid_t file, const result_table *from, int rank, int ranks) {
+static int write_table(const file_place *at, hid_t file, const result_table *from, int rank, int ranks) {
   table_writer t = {.at = at, .from = from, .block = plan_block_rows(from->layout), .transfer = H5I_INVALID_HID};
   for (size_t k = 0; k < TABLE_MAX_COLUMNS; k++)
     t.sets[k] = t.types[k] = H5I_INVALID_HID;
@@ -126,7 +125,7 @@ static int write_table(const place *at, hid_t file, const result_table *from, in
  * HDF5 1.10 and MPI-IO hang for good when a write fails on one of them; with the default driver a file is open for
  * writing once only. No rank sees what another changes, which is sound because none changes metadata, and blocks never
  * share a chunk. Without MPI there is one process, and the default driver serves. */
-static int rows_write(const plan *p, const place *at, int rank, int ranks) {
+static int rows_write(const plan *p, const file_place *at, int rank, int ranks) {
   int code = 0;
   hid_t access = H5I_INVALID_HID, file = H5I_INVALID_HID;
   HDF5_TRY(at, access = skeleton_access(), "open it");
@@ -144,7 +143,7 @@ out:
 
 typedef struct writer {
   plan plan;
-  place at;
+  file_place at;
 } writer;
 
 /* Collective: each rank looks whether it has the file that rank 0 made. */

@@ -1,4 +1,4 @@
-#include "checkpoint_index.h"
+#include "checkpoint_files.h"
 
 #include <stdlib.h>
 

@@ -176,50 +176,106 @@ static int copy_node(document *to, const document *from, int node) {
   }
 }
 
-/* Registers the assignment, so that the nodes added from now on are known to be its. */
-static char *register_assignment(document *d, const char *assignment) {
-  document_assignment *grown = realloc(d->assignments, (d->assignment_count + 1) * sizeof *grown);
-  if (!grown)
-    return NULL;
+/* Registers an assignment, so that the nodes added from now on are known to be its. @param place  owned from now on */
+static bool register_assignment(document *d, char *place) {
+  document_assignment *grown = place ? realloc(d->assignments, (d->assignment_count + 1) * sizeof *grown) : NULL;
+  if (!grown) {
+    free(place);
+    return false;
+  }
   d->assignments = grown;
+  d->assignments[d->assignment_count++] = (document_assignment){document_node_count(d) + 1, place};
+  return true;
+}
+
+/* "--set path=value" of an assignment; a list of a million elements has no place in a message. */
+static char *place_of_set(const char *assignment) {
   const size_t length = strlen(assignment);
-  const size_t size = length < 240 ? length + 8 : 240; /* a list of a million elements has no place in a message */
+  const size_t size = length < 240 ? length + 8 : 240;
   char *place = malloc(size + sizeof "--set ");
   if (!place)
     return NULL;
   memcpy(place, "--set ", sizeof "--set ");
   source_quote(assignment, length, place + strlen(place), size);
-  d->assignments[d->assignment_count++] = (document_assignment){document_node_count(d) + 1, place};
   return place;
 }
 
-static int assign_value(const edit *e) {
+/* Puts a node where the path leads. @param node  0: there was no memory for it */
+static int put_node(const edit *e, int node) {
+  slot here;
+  const int code = node ? find_slot(e, &here) : no_memory(e);
+  int root = DOCUMENT_ROOT;
+  if (!code)
+    *slot_node(e->d, here, &root) = node;
+  return code;
+}
+
+static int put_text(const edit *e) {
   document *value = NULL;
   const char *text = e->end + 1;
   if (text[strspn(text, " ")] == 0)
     return source_refuse(&e->place, 0, e->why, "no value behind '='; write null or '' where one of them is meant");
-  slot here;
   int code = document_read(e->place, text, strlen(text), &value, e->why);
   if (!code)
-    code = find_slot(e, &here);
-  if (!code) {
-    const int copy = copy_node(e->d, value, DOCUMENT_ROOT);
-    int root = DOCUMENT_ROOT;
-    *slot_node(e->d, here, &root) = copy;
-    code = copy ? 0 : no_memory(e);
-  }
+    code = put_node(e, copy_node(e->d, value, DOCUMENT_ROOT));
   document_destroy(&value);
   return code;
 }
 
 int document_assign(document *d, const char *assignment, message *why) {
-  const char *place = register_assignment(d, assignment);
-  if (!place)
+  if (!register_assignment(d, place_of_set(assignment)))
     return refuse(why, EXIT_RUN, "--set: out of memory");
+  const char *place = d->assignments[d->assignment_count - 1].place;
   edit e = {.d = d, .path = assignment, .end = strchr(assignment, '='), .place = {.name = place}, .why = why};
   if (!e.end)
     return source_refuse(&e.place, 0, why, "no '=', expected path=value such as model.gamma=0.1");
   if (e.end == assignment)
     return source_refuse(&e.place, 0, why, "no path in front of '=', expected path=value such as model.gamma=0.1");
-  return assign_value(&e);
+  return put_text(&e);
+}
+
+static int add_scalar(document *d, const char *text) {
+  return yaml_document_add_scalar(&d->tree, NULL, (const unsigned char *)text, (int)strlen(text),
+                                  YAML_PLAIN_SCALAR_STYLE);
+}
+
+static int add_number(document *d, double number) {
+  char text[32];
+  snprintf(text, sizeof text, "%.17g", number);
+  return add_scalar(d, text);
+}
+
+static int add_list(document *d, const double *numbers, size_t count) {
+  const int list = yaml_document_add_sequence(&d->tree, NULL, YAML_FLOW_SEQUENCE_STYLE);
+  for (size_t i = 0; list && i < count; i++) {
+    const int item = add_number(d, numbers[i]);
+    if (!item || !yaml_document_append_sequence_item(&d->tree, list, item))
+      return 0;
+  }
+  return list;
+}
+
+static int add_value(document *d, const study_assignment *value) {
+  switch (value->what) {
+  case ASSIGN_NUMBER:
+    return add_number(d, value->numbers[0]);
+  case ASSIGN_LIST:
+    return add_list(d, value->numbers, value->count);
+  case ASSIGN_NULL:
+    return add_scalar(d, "null");
+  case ASSIGN_EMPTY:
+    return yaml_document_add_mapping(&d->tree, NULL, YAML_FLOW_MAPPING_STYLE);
+  }
+  return 0;
+}
+
+int document_assign_value(document *d, const char *place, const study_assignment *value, message *why) {
+  if (!register_assignment(d, strdup(place)))
+    return refuse(why, EXIT_RUN, "%s: out of memory", place);
+  const edit e = {.d = d,
+                  .path = value->path,
+                  .end = value->path + strlen(value->path),
+                  .place = {.name = d->assignments[d->assignment_count - 1].place},
+                  .why = why};
+  return put_node(&e, add_value(d, value));
 }

@@ -6,9 +6,28 @@
 #ifndef RICOCHET_APP_DOCUMENT_H
 #define RICOCHET_APP_DOCUMENT_H
 
+#include <stdarg.h>
+#include <stdbool.h>
 #include <yaml.h>
 
-#include "source.h"
+#include "study.h"
+
+/* Where a text came from, as messages begin: `FILE:LINE:`, or `--set path=value:`, whose lines are not worth naming. */
+
+typedef struct source {
+  const char *name; /* borrowed */
+  bool lines;       /* messages name the line too */
+} source;
+
+/** A refusal that begins with the place. @param line  from 1. @returns EXIT_USAGE. */
+int source_refuse(const source *from, size_t line, message *why, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
+int source_refuse_list(const source *from, size_t line, message *why, const char *format, va_list arguments)
+    __attribute__((format(printf, 4, 0)));
+
+/** Copies text for use inside a one-line message: control characters become blanks, and what does not fit into `size`
+ *  bytes is cut between two characters and replaced by "...". @param size  at least 8. */
+void source_quote(const char *text, size_t length, char *quoted, size_t size);
 
 enum { DOCUMENT_ROOT = 1 };
 
@@ -72,6 +91,9 @@ int document_emit(const document *d, char **text, message *why);
 
 /** @param assignment  "path=value", copied. @returns 0, EXIT_USAGE, or EXIT_RUN when out of memory. */
 int document_assign(document *d, const char *assignment, message *why);
+
+/** The same for a value of the program. @param place  what messages about it begin with */
+int document_assign_value(document *d, const char *place, const study_assignment *value, message *why);
 
 /* What a text must pass before its document tree is built.
  *

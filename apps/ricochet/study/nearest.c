@@ -75,22 +75,22 @@ static void finish(const search *s, char *near, size_t size) {
   snprintf(near, size, "%s", s->best);
 }
 
-void schema_nearest(const char *path, char *near, size_t size) {
+void schema_nearest(const schema *t, const char *path, char *near, size_t size) {
   search s = begin(path);
   if (strlen(path) <= LONGEST_NAME) {
-    for (int key = 0; key < KEY_COUNT; key++)
-      consider(&s, schema_row((study_key)key)->path);
+    for (size_t i = 0; i < t->key_count; i++)
+      consider(&s, t->keys[i]->path);
     for (int key = 0; key < SWEEP_KEY_COUNT; key++)
       consider(&s, schema_sweep_row((sweep_key)key)->path);
-    schema_sections(consider_section, &s);
+    schema_sections(t, consider_section, &s);
   }
   finish(&s, near, size);
 }
 
-void schema_nearest_parameter(const char *path, char *near, size_t size) {
+void schema_nearest_parameter(const schema *t, const char *path, char *near, size_t size) {
   search s = begin(path);
-  for (int key = 0; key < KEY_COUNT && strlen(path) <= LONGEST_NAME; key++)
-    if (schema_row((study_key)key)->sweep)
-      consider(&s, schema_row((study_key)key)->path);
+  for (size_t i = 0; i < t->key_count && strlen(path) <= LONGEST_NAME; i++)
+    if (t->keys[i]->sweep)
+      consider(&s, t->keys[i]->path);
   finish(&s, near, size);
 }

@@ -1,44 +1,80 @@
+/* Looking keys up, and the sentences about them: what a key allows, and which names a section knows. */
 #include "schema.h"
 
 #include <math.h>
+#include <stdarg.h>
 #include <string.h>
 
-study_key schema_find(const char *path) {
-  int key = 0;
-  while (key < KEY_COUNT && strcmp(schema_row((study_key)key)->path, path) != 0)
-    key++;
-  return (study_key)key;
+#include "keys.h"
+#include "study.h"
+
+/* --- the keys of a sweep entry --- */
+
+static const schema_entry sweep_rows[SWEEP_KEY_COUNT] = {
+    [SWEEP_PARAMETER] = {.path = "sweep.parameter",
+                         IS_TEXT,
+                         REQUIRED,
+                         DOC("The key that is swept, or an element of its list: `model.gamma`, `model.floor[3]`.")},
+    [SWEEP_VALUES] = {.path = "sweep.values", IS_NUMBERS, ANY, DOC("The values, in the order of the tasks.")},
+    [SWEEP_FROM] = {.path = "sweep.from", IS_NUMBER, ANY, DOC("Instead of `values`: the first value.")},
+    [SWEEP_TO] = {.path = "sweep.to", IS_NUMBER, ANY, DOC("The last value, larger than `from`, met exactly.")},
+    [SWEEP_POINTS] = {.path = "sweep.points",
+                      IS_INTEGER,
+                      RANGE(1, STUDY_MAX_POINTS),
+                      DOC("Number of values, both ends included; 1 only where `from` equals `to`.")},
+    [SWEEP_SCALE] = {.path = "sweep.scale",
+                     IS_WORD,
+                     DEFAULT("linear"),
+                     ONE_OF("linear|log"),
+                     DOC("`linear`: equal steps; `log`: equal ratios, `from` above 0.")},
+    [SWEEP_BACK] = {.path = "sweep.back",
+                    IS_FLAG,
+                    DEFAULT("false"),
+                    DOC("The values once more in the reverse order, after the others: with `iterate.follow`, there "
+                        "and back.")},
+};
+
+study_key schema_sweep_row(sweep_key key) {
+  return &sweep_rows[key];
 }
 
-bool schema_is_section(const char *name) {
-  const size_t length = strlen(name);
-  for (int key = 0; key < KEY_COUNT; key++) {
-    const char *path = schema_row((study_key)key)->path;
-    if (strncmp(path, name, length) == 0 && path[length] == '.')
+/* --- looking up --- */
+
+study_key schema_find(const schema *t, const char *path) {
+  for (size_t i = 0; i < t->key_count; i++)
+    if (strcmp(t->keys[i]->path, path) == 0)
+      return t->keys[i];
+  return NULL;
+}
+
+static bool is_in_section(const char *path, const char *name, size_t length) {
+  return strncmp(path, name, length) == 0 && path[length] == '.';
+}
+
+bool schema_is_section(const schema *t, const char *name) {
+  for (size_t i = 0; i < t->key_count; i++)
+    if (is_in_section(t->keys[i]->path, name, strlen(name)))
       return true;
-  }
   return false;
 }
 
-/* Whether a row before `key` stands in the section of this name. */
-static bool section_is_known(study_key key, const char *name, size_t length) {
-  for (int earlier = 0; earlier < (int)key; earlier++) {
-    const char *path = schema_row((study_key)earlier)->path;
-    if (strncmp(path, name, length) == 0 && path[length] == '.')
+/* Whether a key before number `i` stands in the section of this name. */
+static bool section_is_known(const schema *t, size_t i, const char *name, size_t length) {
+  for (size_t earlier = 0; earlier < i; earlier++)
+    if (is_in_section(t->keys[earlier]->path, name, length))
       return true;
-  }
   return false;
 }
 
-void schema_sections(void (*see)(const char *name, size_t length, void *user), void *user) {
+void schema_sections(const schema *t, void (*call)(const char *name, size_t length, void *user), void *user) {
   static const char sweep[] = "sweep";
-  for (int key = 0; key < KEY_COUNT; key++) {
-    const char *path = schema_row((study_key)key)->path;
+  for (size_t i = 0; i < t->key_count; i++) {
+    const char *path = t->keys[i]->path;
     for (const char *dot = strchr(path, '.'); dot; dot = strchr(dot + 1, '.'))
-      if (!section_is_known((study_key)key, path, (size_t)(dot - path)))
-        see(path, (size_t)(dot - path), user);
+      if (!section_is_known(t, i, path, (size_t)(dot - path)))
+        call(path, (size_t)(dot - path), user);
   }
-  see(sweep, sizeof sweep - 1, user);
+  call(sweep, sizeof sweep - 1, user);
 }
 
 long schema_find_word(const char *word, size_t length, const char *words) {
@@ -55,36 +91,171 @@ bool schema_is_among(const char *word, size_t length, const char *words) {
   return schema_find_word(word, length, words) >= 0;
 }
 
-void schema_either(const char *words, char *text, size_t size) {
-  size_t used = 0;
+/* --- kinds and types of model --- */
+
+const schema_choice *schema_choice_of(const schema_choice *const *choices, const char *name) {
+  while (*choices && !(name && strcmp((*choices)->name, name) == 0))
+    choices++;
+  return *choices;
+}
+
+static bool takes(const schema_choice *choice, study_key key) {
+  return !*key->group || schema_is_among(key->group, strlen(key->group), choice->groups);
+}
+
+static bool is_of_model(study_key key) {
+  return strncmp(key->path, "model.", 6) == 0;
+}
+
+bool schema_kind_takes(const schema_choice *kind, study_key key) {
+  return is_of_model(key) || takes(kind, key);
+}
+
+bool schema_model_takes(const schema_choice *model, study_key key) {
+  return is_of_model(key) ? takes(model, key) : !key->needs || (key->needs & model->features) != 0;
+}
+
+/* Appends a name to "a or b". */
+static void append_or(char *text, size_t size, const char *name) {
+  const size_t used = strlen(text);
+  snprintf(text + used, size - used, "%s%s", used ? " or " : "", name);
+}
+
+void schema_kinds_of(const schema *t, study_key key, char *text, size_t size) {
   *text = 0;
-  for (const char *word = words; *word && used < size; word += strcspn(word, "|"), word += *word == '|')
-    used += (size_t)snprintf(text + used, size - used, "%s%.*s", word == words ? "" : " or ", (int)strcspn(word, "|"),
-                             word);
+  for (const schema_choice *const *kind = t->kinds; *kind; kind++)
+    if (schema_kind_takes(*kind, key))
+      append_or(text, size, (*kind)->name);
 }
 
-bool schema_concerns(const schema_entry *entry, const char *kind) {
-  return !entry->kinds || schema_is_among(kind, strlen(kind), entry->kinds);
+void schema_models_of(const schema *t, study_key key, char *text, size_t size) {
+  *text = 0;
+  for (const schema_choice *const *model = t->models; *model; model++)
+    if (schema_model_takes(*model, key))
+      append_or(text, size, (*model)->name);
 }
 
-bool schema_concerns_model(const schema_entry *entry, const char *model) {
-  return !entry->models || schema_is_among(model, strlen(model), entry->models);
+void schema_models_with(const schema *t, unsigned features, char *text, size_t size) {
+  *text = 0;
+  for (const schema_choice *const *model = t->models; *model; model++)
+    if ((*model)->features & features)
+      append_or(text, size, (*model)->name);
 }
 
-const char *schema_word_models(const schema_entry *entry, const char *word) {
-  const long place = schema_find_word(word, strlen(word), entry->words);
-  return entry->word_models && place >= 0 ? entry->word_models[place] : NULL;
+unsigned schema_word_needs(study_key key, const char *word) {
+  const long place = word ? schema_find_word(word, strlen(word), key->words) : -1;
+  return key->word_needs && place >= 0 ? key->word_needs[place] : 0;
 }
 
-const char *schema_fallback(const schema_entry *entry, const char *model) {
-  return model && schema_is_among(model, strlen(model), entry->other_models) ? entry->other_fallback : entry->fallback;
+const char *schema_fallback(study_key key, const schema_choice *model) {
+  for (const schema_default *d = model ? model->defaults : NULL; d && d->path; d++)
+    if (strcmp(d->path, key->path) == 0)
+      return d->fallback;
+  return key->fallback;
 }
 
-schema_fit schema_check(const schema_entry *entry, double value) {
-  if (entry->type == VALUE_INTEGER && isfinite(value) && value != floor(value))
+schema_fit schema_check(study_key key, double value) {
+  if (key->type == VALUE_INTEGER && isfinite(value) && value != floor(value))
     return FIT_NOT_INTEGER;
-  const bool above = entry->low_open ? value > entry->low : value >= entry->low;
-  const bool below = entry->high_open ? value < entry->high : value <= entry->high;
-  const double most = entry->type == VALUE_INTEGER ? 0x1p53 : INFINITY; /* above, doubles skip integers */
+  const bool above = key->low_open ? value > key->low : value >= key->low;
+  const bool below = key->high_open ? value < key->high : value <= key->high;
+  const double most = key->type == VALUE_INTEGER ? 0x1p53 : INFINITY; /* above, doubles skip integers */
   return above && below && fabs(value) < most ? FIT_OK : FIT_OUT_OF_RANGE;
+}
+
+/* --- sentences --- */
+
+static void append(char *text, size_t size, const char *format, ...) __attribute__((format(printf, 3, 4)));
+
+static void append(char *text, size_t size, const char *format, ...) {
+  const size_t used = strlen(text);
+  va_list arguments;
+  va_start(arguments, format);
+  vsnprintf(text + used, size - used, format, arguments);
+  va_end(arguments);
+}
+
+static void append_range(study_key key, char *text, size_t size) {
+  const bool low = isfinite(key->low), high = isfinite(key->high);
+  if (low && high && !key->low_open && !key->high_open) {
+    append(text, size, " from %.15g to %.15g", key->low, key->high);
+    return;
+  }
+  if (low)
+    append(text, size, key->low_open ? " > %.15g" : " >= %.15g", key->low);
+  if (high)
+    append(text, size, "%s%s %.15g", low ? " and" : "", key->high_open ? " <" : " <=", key->high);
+}
+
+static void append_words(study_key key, char *text, size_t size) {
+  if (strchr(key->words, '|'))
+    append(text, size, "one of ");
+  for (const char *word = key->words; *word;) {
+    const size_t length = strcspn(word, "|");
+    append(text, size, "%.*s%s", (int)length, word, word[length] ? ", " : "");
+    word += length + (word[length] == '|');
+  }
+}
+
+void schema_allowed_item(study_key key, char *text, size_t size) {
+  *text = 0;
+  switch (key->type) {
+  case VALUE_NUMBER:
+  case VALUE_INTEGER:
+    append(text, size, key->type == VALUE_NUMBER ? "a number" : "an integer");
+    append_range(key, text, size);
+    break;
+  case VALUE_FLAG:
+    append(text, size, "true or false");
+    break;
+  case VALUE_WORD:
+    append_words(key, text, size);
+    break;
+  case VALUE_TEXT:
+    append(text, size, "text");
+    break;
+  }
+  if (key->null)
+    append(text, size, " or null");
+}
+
+void schema_allowed(study_key key, char *text, size_t size) {
+  if (key->scalar) {
+    schema_allowed_item(key, text, size);
+    append(text, size, "%s", key->list ? ", or a list of them" : "");
+    return;
+  }
+  *text = 0;
+  if (key->type == VALUE_WORD) {
+    append(text, size, "a list of words, each ");
+    append_words(key, text, size);
+    return;
+  }
+  append(text, size, "a list of %s", key->type == VALUE_INTEGER ? "integers" : "numbers");
+  append_range(key, text, size);
+}
+
+/* The names in a section, as a list in words. */
+typedef struct name_list {
+  const char *section;
+  char *text;
+  size_t size;
+} name_list;
+
+static void append_name(const char *path, size_t path_length, void *user) {
+  const name_list *list = user;
+  const size_t length = strlen(list->section), skip = length ? length + 1 : 0;
+  const bool inside = !length || (strncmp(path, list->section, length) == 0 && path[length] == '.');
+  if (inside && path_length > skip && !memchr(path + skip, '.', path_length - skip))
+    append(list->text, list->size, "%s%.*s", *list->text ? ", " : "", (int)(path_length - skip), path + skip);
+}
+
+void schema_names(const schema *t, const char *section, char *text, size_t size) {
+  name_list list = {section, text, size};
+  *text = 0;
+  for (size_t i = 0; i < t->key_count; i++)
+    append_name(t->keys[i]->path, strlen(t->keys[i]->path), &list);
+  for (int key = 0; key < SWEEP_KEY_COUNT; key++)
+    append_name(schema_sweep_row((sweep_key)key)->path, strlen(schema_sweep_row((sweep_key)key)->path), &list);
+  schema_sections(t, append_name, &list);
 }

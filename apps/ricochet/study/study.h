@@ -20,8 +20,6 @@ enum {
   STUDY_MAX_POINTS = 1 << 24 /* values of one sweep: every rank holds them */
 };
 
-typedef struct study study;
-
 /** A number of the study by its name. */
 typedef struct study_parameter {
   char name[96]; /* "model.gamma", "model.floor[3]" */
@@ -43,24 +41,41 @@ typedef struct study_sweep {
  *  @returns 0, EXIT_FILES when it cannot be read, EXIT_USAGE when it is larger than STUDY_MAX_BYTES. */
 int study_read_file(const char *path, char **text, size_t *length, message *why);
 
+/** What the program puts into a study before it is checked, in place of what the study says there. */
+typedef struct study_assignment {
+  const char *path;      /* "orbit.period", borrowed */
+  const double *numbers; /* [count] */
+  size_t count;
+  enum { ASSIGN_NUMBER, ASSIGN_LIST, ASSIGN_NULL, ASSIGN_EMPTY /* a section without keys */ } what;
+} study_assignment;
+
+/** A study to be read. */
+typedef struct study_source {
+  const schema *schema; /* borrowed, must outlive the study */
+  const char *name;     /* how messages call the text, usually the file's path */
+  const char *text;     /* [length] */
+  size_t length;
+  const char *const *sets; /* [set_count] `--set` assignments "path=value", the value in YAML; applied to the tree
+                              before validation, so any key can be set, also `sweep[0].points`. Messages about them
+                              begin with `--set path=value:` */
+  size_t set_count;
+  const char *assigned_by;             /* what messages about the following begin with, "restart" */
+  const study_assignment *assignments; /* [assignment_count] applied after `sets` */
+  size_t assignment_count;
+} study_source;
+
 /** Parses and validates a study.
- *  @param name  how messages call the text, usually the file's path
- *  @param sets  `--set` assignments "path=value", the value in YAML; applied to the tree before validation, so any key
- *               can be set, also `sweep[0].points`. Messages about them begin with `--set path=value:`
  *  @param out   NULL after a refusal
  *  @returns 0, EXIT_USAGE, or EXIT_RUN when out of memory. */
-int study_parse(const char *name, const char *text, size_t length, const char *const *sets, size_t n_sets, study **out,
-                message *why);
+int study_parse(const study_source *from, study **out, message *why);
 void study_destroy(study **s);
 
-/** Kind of the study, a word of the schema: "orbits". */
+/** Its kind, "orbits". */
 const char *study_kind(const study *s);
 
-/** Type of its model, a word of the schema: "chain". */
-const char *study_model(const study *s);
-
-/** Value of orbit.method, with its default; of studies of kind `orbits`. */
-const char *study_method(const study *s);
+/** Its kind, and the type of its model, in the schema. */
+const schema_choice *study_kind_choice(const study *s);
+const schema_choice *study_model_choice(const study *s);
 
 /** Place of the number of a particle in the value of a key: the particle's own in a list, that of a single number; -1
  *  where the single number is of another particle. Of keys with a value. */
@@ -68,6 +83,9 @@ long study_item(const study *s, study_key key, size_t particle);
 
 /** How messages call this study (the `name` it was parsed under). */
 const char *study_name(const study *s);
+
+/** Free text of the user; "" when there is none. */
+const char *study_title(const study *s);
 
 /** Line of a key in the file, or of the sweep that supplies a key left out; 0 when neither stands there (default, or
  *  `--set`). */
@@ -91,32 +109,9 @@ const study_sweep *study_sweep_at(const study *s, size_t index);
 /** Number of grid points, the product over the sweeps; 1 without a sweep. Less than 2^40. */
 uint64_t study_tasks(const study *s);
 
-/** Whether the study follows a family of motions along a parameter: kinds `branch` and `grazing`, and diagrams beyond
- *  grazing. */
-bool study_follows(const study *s);
-
-/** Whether the study iterates a map or a section: kinds `diagram` and `basin`. */
-bool study_iterates(const study *s);
-/** Whether its model is a map. */
-bool study_is_map(const study *s);
-/** Numbers of a state that such a study iterates: of the map, or of the section. */
-size_t study_state_size(const study *s);
-/** Which of them is observed. */
-size_t study_observed(const study *s);
-/** Whether it is a diagram that looks for grazing first, and says how far beyond it stands. */
-bool study_is_beyond(const study *s);
-/** Whether windows along its last sweep are to be listed. */
-bool study_windows(const study *s);
-
-/** What it is followed along; of studies that do. */
-const study_parameter *study_followed(const study *s);
-
-/** The second parameter of curves through its special points; its key is KEY_COUNT where none are wanted. */
-const study_parameter *study_traced(const study *s);
-
-/** Whether a study of kind `branch` says that it starts from a result. What it takes from there is not known yet, and
- *  how its keys fit together not checked. */
-bool study_restarts(const study *s);
+/** The number that the word of a key names, such as `branch.parameter`, and that the kind moves while a task runs; NULL
+ *  where there is none. */
+const study_parameter *study_moved(const study *s, study_key by);
 
 /** Value of sweep `index` at a task below study_tasks; the last sweep varies fastest. */
 double study_sweep_value(const study *s, size_t index, uint64_t task);
@@ -127,19 +122,16 @@ typedef struct study_values study_values;
 
 /** Borrows the study, which must outlive it. Starts at task 0. @returns NULL when out of memory. */
 study_values *study_values_create(const study *s);
+/** The study. */
+const study *study_values_of(const study_values *v);
 void study_values_destroy(study_values **v);
 /** Moves to a task, below study_tasks. Only swept values are rewritten, nothing is allocated. */
 void study_values_at(study_values *v, uint64_t task);
 
 /** Gives the parameter of sweep `index` another value, until study_values_at. */
 void study_values_sweep(study_values *v, size_t index, double value);
-/** Moves the parameter that a branch is followed along, which starts at `branch.from`. */
-void study_values_follow(study_values *v, double value);
-/** Sets where the branch of this task starts, `branch.from` and the parameter, where the study leaves it to the first
- *  motion: `branch.from` reads as minus infinity until then. */
-void study_values_begin(study_values *v, double value);
-/** Moves the second parameter of curves, which starts at the study's own value of it. */
-void study_values_trace(study_values *v, double value);
+/** Moves the number that a key names (study_moved), until study_values_at; nothing where there is none. */
+void study_values_move(study_values *v, study_key by, double value);
 
 /** Whether the key was given (in the file or by --set) or has a default. */
 bool value_present(const study_values *v, study_key key);

@@ -1,9 +1,112 @@
+/* Numbers of the study by their names, and the sweeps over them. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "number.h"
-#include "parameter.h"
+#include "check.h"
+
+/* --- numbers by their names --- */
+
+/* A name being looked up. */
+typedef struct lookup {
+  const study *s;
+  const document *d;
+  const parameter_use *use;
+  message *why;
+} lookup;
+
+/* Splits "model.floor[3]" into key path and item; item -1 without an index, -2 for a malformed or huge one. */
+static long split_name(const char *text, char *path, size_t size) {
+  const size_t length = strcspn(text, "[");
+  snprintf(path, size, "%.*s", (int)(length < size ? length : size - 1), text);
+  if (!text[length])
+    return -1;
+  const char *digits = text + length + 1;
+  const size_t count = strspn(digits, "0123456789");
+  if (count == 0 || count > 9 || strcmp(digits + count, "]") != 0)
+    return -2;
+  return strtol(digits, NULL, 10);
+}
+
+static int refuse_unknown(const lookup *l, const char *name, const char *path) {
+  char near[64], shown[80];
+  const parameter_use *u = l->use;
+  source_quote(name, strlen(name), shown, sizeof shown);
+  schema_nearest_parameter(l->s->schema, path, near, sizeof near);
+  if (*near)
+    return document_refuse(l->d, u->node, l->why, "unknown %s parameter '%s'; did you mean '%s'?", u->noun, shown,
+                           near);
+  return document_refuse(l->d, u->node, l->why, "unknown %s parameter '%s', expected %s", u->noun, shown, u->example);
+}
+
+static int refuse_model(const lookup *l, study_key key) {
+  char models[64];
+  schema_models_of(l->s->schema, key, models, sizeof models);
+  return document_refuse(l->d, l->use->node, l->why, "%s = %s is a key of model.type: %s, and this is model.type: %s",
+                         l->use->label, key->path, models, l->s->model->name);
+}
+
+/* A parameter must name one number: a scalar by its key, an element of a list by its index. */
+static int check_item(const lookup *l, const study_parameter *p) {
+  const typed_value *value = study_value(l->s, p->key);
+  const int node = l->use->node;
+  const char *path = p->key->path, *label = l->use->label;
+  if (!value->list)
+    return p->item == -1
+               ? 0
+               : document_refuse(l->d, node, l->why,
+                                 "%s = %s, but %s is a single number here: %s %s without an index, or give a list",
+                                 label, p->name, path, l->use->verb, path);
+  if (value->count == 0)
+    return document_refuse(l->d, node, l->why, "%s = %s, but %s is an empty list: give the elements to %s", label,
+                           p->name, path, l->use->verb);
+  if (p->item == -1)
+    return document_refuse(l->d, node, l->why, "%s = %s, but %s is a list: %s one element by its index, such as %s[0]",
+                           label, path, path, l->use->verb, path);
+  if (!(p->item >= 0 && (size_t)p->item < value->count))
+    return document_refuse(l->d, node, l->why, "%s = %s, but %s has %zu elements: expected an index from 0 to %zu",
+                           label, p->name, path, value->count, value->count - 1);
+  return 0;
+}
+
+int parameter_find(const study *s, const document *d, const parameter_use *use, const char *name,
+                   study_parameter *parameter, message *why) {
+  char path[64];
+  const lookup l = {.s = s, .d = d, .use = use, .why = why};
+  const long item = split_name(name, path, sizeof path);
+  const study_key key = schema_find(s->schema, path);
+  if (!key)
+    return refuse_unknown(&l, name, path);
+  if (!key->sweep)
+    return document_refuse(d, use->node, why, "%s = %s %s: %s", use->label, path, use->done, key->no_sweep);
+  if (s->model && !schema_model_takes(s->model, key))
+    return refuse_model(&l, key);
+  *parameter = (study_parameter){.key = key, .item = item};
+  if (item >= 0)
+    snprintf(parameter->name, sizeof parameter->name, "%s[%ld]", path, item);
+  else
+    snprintf(parameter->name, sizeof parameter->name, "%s", name);
+  return check_item(&l, parameter);
+}
+
+int parameter_supply(study *s, const document *d, const parameter_use *use, int key_node, study_key key, double value,
+                     message *why) {
+  typed_value *to = &s->values[study_place_of(s, key)];
+  if (to->node)
+    return 0;
+  const char *assigned = document_assigned_by(d, use->node);
+  typed_clear(to);
+  *to = (typed_value){.present = true, .count = 1, .line = document_line(d, key_node)};
+  to->numbers = calloc(1, sizeof *to->numbers);
+  to->assigned = assigned ? strdup(assigned) : NULL;
+  if (!to->numbers || (assigned && !to->assigned))
+    return refuse(why, EXIT_RUN, "%s: out of memory", s->name);
+  to->numbers[0] = value;
+  return 0;
+}
+
+/* --- sweeps --- */
 
 static const uint64_t too_many_tasks = (uint64_t)1 << 40;
 
@@ -43,7 +146,7 @@ static int find_keys(reading *r) {
     while (key < SWEEP_KEY_COUNT && !document_is(r->d, pair->key, short_name((sweep_key)key)))
       key++;
     if (key == SWEEP_KEY_COUNT)
-      return refuse_unknown_key(r->d, pair->key, "sweep", r->why);
+      return refuse_unknown_key(r->s, r->d, pair->key, "sweep", r->why);
     r->e->nodes[key] = pair->value;
     r->keys[key] = pair->key;
   }
@@ -234,8 +337,7 @@ static int read_entry(reading *r) {
   char label[128];
   snprintf(label, sizeof label, "swept %s", r->e->view.name);
   for (size_t i = 0; i < r->e->view.points && !code; i++)
-    code =
-        typed_check(r->d, sweep_value_node(r->d, r->e, i), schema_row(r->e->view.key), label, r->e->values[i], r->why);
+    code = typed_check(r->d, sweep_value_node(r->d, r->e, i), r->e->view.key, label, r->e->values[i], r->why);
   char used[64];
   const parameter_use use = use_of(r, used, sizeof used);
   return code ? code

@@ -1,4 +1,4 @@
-#include "typed.h"
+#include "check.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -10,7 +10,7 @@
 typedef struct reading {
   const document *d;
   int node;
-  const schema_entry *row;
+  study_key row;
   const char *label;
   long item;
   message *why;
@@ -126,7 +126,7 @@ static int read_items(reading r, typed_value *value) {
   return code;
 }
 
-int typed_read(const document *d, int key, int node, const schema_entry *row, const char *label, typed_value *value,
+int typed_read(const document *d, int key, int node, study_key row, const char *label, typed_value *value,
                message *why) {
   const yaml_node_t *n = document_node(d, node);
   const reading r = {d, node, row, label, -1, why};
@@ -147,7 +147,7 @@ int typed_read(const document *d, int key, int node, const schema_entry *row, co
 }
 
 /* The default of a list: "[]", or words as in "[fold, grazing]". */
-static bool default_list(const schema_entry *row, const char *fallback, typed_value *value) {
+static bool default_list(study_key row, const char *fallback, typed_value *value) {
   size_t most = 1;
   for (const char *c = fallback; *c; c++)
     most += *c == ',';
@@ -161,7 +161,7 @@ static bool default_list(const schema_entry *row, const char *fallback, typed_va
   return value->numbers != NULL;
 }
 
-bool typed_default(const schema_entry *row, const char *model, typed_value *value) {
+bool typed_default(study_key row, const schema_choice *model, typed_value *value) {
   const char *fallback = schema_fallback(row, model);
   *value = (typed_value){0};
   if (row->required || !fallback || !*fallback)
@@ -195,7 +195,7 @@ int typed_item_node(const document *d, const typed_value *value, size_t i) {
   return value->list ? document_node(d, value->node)->data.sequence.items.start[i] : value->node;
 }
 
-int typed_check(const document *d, int node, const schema_entry *row, const char *label, double value, message *why) {
+int typed_check(const document *d, int node, study_key row, const char *label, double value, message *why) {
   const schema_fit fit = schema_check(row, value);
   if (fit == FIT_OK)
     return 0;

@@ -1,17 +1,22 @@
-/* Attractors: what iterates do in the long run.
+/* Attractors: what iterates converge to in the long run.
  *
- * The iterates are those of a map (map_runner below) or the crossings of a motion with a section (motion_section.h).
- * From a start, `transient` of them are left out; `keep` that follow are stored; over `measure` that follow the
- * transient, the stored ones among them, exponents and impacts are averaged; then come 2 period_limit more that decide
- * whether the attractor is periodic.
+ * The iterates are those of a map (map_runner below) or the crossings of a motion with a Poincare section
+ * (motion_section.h). A run discards `transient` iterates and stores the `keep` iterates that follow. Exponents and
+ * impacts are averaged over the `measure` iterates after the transient, which include the stored ones. Another 2
+ * period_limit iterates then decide whether the attractor is periodic.
  *
- * It has the period p when in all of those last ones each number returns after p iterates to where it was, within
- * period_tol of its extent in them, and does not part: what it is off does not grow from one time to the next at the
- * same place of the cycle; both but for rounding, of maps 1e-12 and of motions 1e-9 of the largest number. The smallest
- * p up to the limit counts; or half of it, where what the iterates are off after p / 2 shrinks to nothing as well:
- * motions that come to a cycle slowly, from alternating sides, return after two of its periods first. Near the edge of
- * a window motions come to their attractor, or leave what was one, arbitrarily slowly: there a period found on the
- * attractor is not proof, and none found neither; edges are exact by cycle_window.h and motion_window.h. */
+ * The attractor has period p when, in all of these last iterates,
+ *
+ *   - each number of the state returns after p iterates to within period_tol times its extent in them, and
+ *   - the deviation from period p is not growing from one period to the next at the same phase of the cycle.
+ *
+ * Both hold up to rounding, 1e-12 of the largest number for maps and 1e-9 for motions. The smallest p up to the limit
+ * is reported. Half of it is reported if the deviation from period p / 2 shrinks to zero, too: a motion that
+ * approaches a cycle slowly from alternating sides returns first after two of its periods.
+ *
+ * Near the edge of a window convergence to an attractor, and departure from a former one, are arbitrarily slow. There
+ * a period that is found, or not found, on the attractor proves nothing. cycle_window.h and motion_window.h locate
+ * edges exactly. */
 #ifndef RICOCHET_ATTRACTOR_H
 #define RICOCHET_ATTRACTOR_H
 
@@ -24,15 +29,15 @@
 RIC_BEGIN_DECLARATIONS
 
 typedef struct ric_attractor_options {
-  size_t transient;    /* iterates left out, default 9000 */
+  size_t transient;    /* iterates discarded, default 9000 */
   size_t keep;         /* iterates stored, default 1000; 0: none */
   size_t measure;      /* iterates over which exponents and impacts are averaged, >= 1 and >= keep; default 1000 */
   size_t observe;      /* which number of the state `values` are, default 0 */
   size_t exponents;    /* Lyapunov exponents wanted, at most the size of the state; default 0: none */
-  size_t period_limit; /* longest period looked for, 1 to 100000; default 64 */
+  size_t period_limit; /* longest period tested, 1 to 100000; default 64 */
   double period_tol;   /* default 1e-6 */
   double bound;        /* a state with a number beyond it has diverged; default 1e100 */
-  ric_poll poll;       /* asked at least each millisecond of work */
+  ric_poll poll;       /* called at least once per millisecond of work */
 } ric_attractor_options;
 
 RIC_API ric_attractor_options ric_attractor_options_default(void);
@@ -44,7 +49,7 @@ RIC_API ric_status ric_attractor_options_check(const ric_attractor_options *opti
   X(RIC_ATTRACTOR_PERIODIC, "periodic")                                                                                \
   X(RIC_ATTRACTOR_APERIODIC, "aperiodic") /* no period up to the limit */                                              \
   X(RIC_ATTRACTOR_DIVERGED, "diverged")                                                                                \
-  X(RIC_ATTRACTOR_FAILED, "failed") /* a motion could not go on: the reason says why */
+  X(RIC_ATTRACTOR_FAILED, "failed") /* a motion could not be continued: the reason says why */
 
 typedef enum ric_attractor_kind {
 #define X(name, text) name,
@@ -58,20 +63,19 @@ RIC_API const char *ric_attractor_kind_name(ric_attractor_kind kind);
 
 /** One run to an attractor. The arrays are the caller's. */
 typedef struct ric_attractor {
-  double *z;      /* [size] start; set to the last of the `measure` iterates, from which a run at a neighbouring
-                     parameter may go on. Of a run that diverged or failed: the last state that was in order */
-  double *values; /* [keep] set to the stored iterates of the observed number, NaN where there are none; or NULL */
+  double *z; /* [size] start; set to the last of the `measure` iterates, from which a run at a neighbouring parameter
+                can start. If the run diverged or failed: the last valid state */
+  double *values; /* [keep] set to the stored iterates of the observed number, NaN where missing; or NULL */
   double *states; /* [keep][size] the same of all numbers; or NULL */
-  double *lowest; /* [size] set to that of the last 2 period_limit + 1 iterates whose observed number is smallest, the
-                     first of them: of a periodic attractor always the same state; NaN when diverged or failed; or
-                     NULL */
-  double *exponents; /* [exponents] set, natural logarithm per iterate, largest first as a rule; NaN where they are not
-                        known; without meaning where options.exponents is 0 */
+  double *lowest; /* [size] set to the first of the last 2 period_limit + 1 iterates whose observed number is smallest:
+                     on a periodic attractor always the same state; NaN when diverged or failed; or NULL */
+  double *exponents; /* [exponents] set, natural logarithm per iterate, usually largest first; NaN where unknown; unused
+                        if options.exponents is 0 */
   ric_attractor_kind kind;
-  size_t period;  /* 0: none found */
-  double impacts; /* per iterate, on the average; NaN when diverged or failed before any was counted */
-  size_t
-      iterates; /* done when the run diverged or failed, to the nearest stride of looking; else transient + measure */
+  size_t period;    /* 0: none found */
+  double impacts;   /* mean per iterate; NaN when diverged or failed before any was counted */
+  size_t iterates;  /* computed when the run diverged or failed, up to the interval of the tests; else transient +
+                       measure */
   char reason[128]; /* "" when periodic or aperiodic */
 } ric_attractor;
 
@@ -83,9 +87,9 @@ RIC_API double ric_attractor_distance(double *a, double *b, size_t count);
 
 /* --- of maps ------------------------------------------------------------------------------------------------------ */
 
-/* Many maps side by side in vector lanes. A value's iterates are the same operations in the same order in every variant
- * and whichever values are beside it, so results are the same bits. An iterate that is not exactly the one of
- * ric_grazing_map_step differs from it by rounding only. */
+/* Many maps side by side in SIMD lanes. Every variant applies the same operations in the same order to a value,
+ * whichever values share the register, so results are equal in every bit. An iterate may differ from that of
+ * ric_grazing_map_step by rounding. */
 
 #define RIC_MAP_LANES_LIST(X)                                                                                          \
   X(RIC_MAP_LANES_ONE, "one")     /* plain C, one value after another */                                               \
@@ -101,9 +105,9 @@ typedef enum ric_map_lanes {
 
 /** Name of a variant, "four". Never NULL. */
 RIC_API const char *ric_map_lanes_name(ric_map_lanes lanes);
-/** Whether this processor has it; RIC_MAP_LANES_ONE is always there. */
+/** Whether this processor supports the variant; RIC_MAP_LANES_ONE is always available. */
 RIC_API bool ric_map_lanes_available(ric_map_lanes lanes);
-/** The widest one that is available. */
+/** The widest available variant. */
 RIC_API ric_map_lanes ric_map_lanes_widest(void);
 /** The one that is fastest on this processor for maps of a size: wider is not always faster. Each is run a few times on
  * a trial map, a few milliseconds in all.
@@ -121,19 +125,19 @@ RIC_API ric_status ric_map_runner_create(size_t size, const ric_attractor_option
                                          ric_map_runner **runner, ric_error *error);
 RIC_API void ric_map_runner_destroy(ric_map_runner **runner);
 
-/** Runs maps to their attractors; allocates nothing. Whether one has diverged is looked at every 64 iterates, and where
- * storing and measuring end. What is left of a transient is not computed once a value and those beside it have come to
- * cycles that are exact to the bit: that changes no result. Zeros of states are +0.
+/** Runs maps to their attractors; allocates nothing. Divergence is tested every 64 iterates, and where storing and
+ *  measuring end. The rest of a transient is skipped once a value, and those in the same register, repeat bit for bit:
+ *  that changes no result. Zeros of states are +0.
  *
- * Exponents come from tangent vectors made orthogonal after every iterate, which find their places in the last 256
- * iterates of the transient: directions that one iterate parts by less than 1e13 are told apart, to that ratio times
- * the rounding. One of which less than 1e-13 is left outside the span of those before it has been put out, and has
- * -INFINITY. Of a motion that comes exactly to the border, where the derivative is infinite, all are NaN.
- *  @param maps  [count] of the runner's size; may be the same one several times
+ *  Exponents come from tangent vectors that are made orthogonal after every iterate; they align during the last 256
+ *  iterates of the transient. Exponents are accurate to (growth ratio per iterate) x eps; ratios above 1e13 are not
+ *  resolved. If less than 1e-13 of a vector lies outside the span of those before it, its direction is lost: its
+ *  exponent is -INFINITY. If an iterate is exactly at the border, where the derivative is infinite, all exponents are
+ *  NaN.
+ *  @param maps  [count] of the runner's size; the same map may occur several times
  *  @param d  [count]
- *  @param attractors  [count] with their starts; set
- *  @returns RIC_EINVAL naming the map or d that is not finite (ric_grazing_map_check), and starts that are not;
- *           RIC_ESTOPPED */
+ *  @param attractors  [count] with their starts in z; set
+ *  @returns RIC_EINVAL naming the map (ric_grazing_map_check), d or start that is not finite; RIC_ESTOPPED */
 RIC_API ric_status ric_map_runner_run(ric_map_runner *runner, size_t count, const ric_grazing_map *const *maps,
                                       const double *d, ric_attractor *attractors, ric_error *error);
 

@@ -2,8 +2,8 @@
  *
  *   q''_i + q_i - gamma (q_{i+1} - 2 q_i + q_{i-1}) = lambda_i,   0 <= lambda_i  _|_  q_i - b_i >= 0      (1)-(3)
  *
- * n particles, each on a spring of unit stiffness, neighbours joined by springs of stiffness gamma, a floor b_i (-1 in
- * the source) below each particle or none. Dimensionless. At an impact q'_i changes sign (restitution 1).
+ * n particles, each on a spring of unit stiffness. Springs of stiffness gamma join neighbours. Below each particle is a
+ * floor b_i (-1 in the source) or none. Dimensionless. At an impact q'_i changes sign (restitution 1).
  *
  * Three kinds of ends: `periodic` (a ring; n = 1 is the single oscillator, n = 2 has one spring between the two),
  * `fixed` (q_{-1} = q_n = 0, springs to both walls) and `free` (no springs beyond the ends). All three are pieces of a
@@ -13,7 +13,7 @@
  *   omega(p)^2 = 1 + 4 gamma sin^2(p / 2),                                                                (12)
  *
  * with wave numbers p_j = 2 pi j / n, pi (j + 1) / (n + 1), pi j / n for the modes j = 0 ... n - 1. On a ring the modes
- * j <= n/2 are cosines, those above are the sines of wave number 2 pi (n - j) / n: frequencies come in pairs. */
+ * j <= n/2 are cosines, the others are sines of wave number 2 pi (n - j) / n: frequencies come in pairs. */
 #ifndef RICOCHET_CHAIN_H
 #define RICOCHET_CHAIN_H
 
@@ -25,7 +25,7 @@ RIC_BEGIN_DECLARATIONS
 
 typedef enum ric_ends { RIC_ENDS_PERIODIC, RIC_ENDS_FIXED, RIC_ENDS_FREE } ric_ends;
 
-/** A chain. Plain data; ric_chain_check says whether it makes sense. */
+/** A chain. Plain data; ric_chain_check validates it. */
 typedef struct ric_chain {
   size_t particles; /* n >= 1 */
   ric_ends ends;    /* default periodic */
@@ -68,7 +68,7 @@ RIC_API double ric_chain_energy(const ric_chain *chain, const double *q, const d
 RIC_API double ric_dispersion(double gamma, double wave_number);
 
 /** Coupling at which the out-of-phase mode p = pi has the period T, (13): ((2 pi / T)^2 - 1) / 4. The first resonance
- * of even rings; other ends and odd rings resonate slightly later. Negative for T > 2 pi. */
+ *  of even rings; other ends and odd rings resonate slightly later. Negative for T > 2 pi. */
 RIC_API double ric_gamma_c(double period);
 
 RIC_END_DECLARATIONS

@@ -1,17 +1,18 @@
-/* Events of a motion with obstacles: what happened, where, when, how hard.
+/* Events of a motion with obstacles: what happened, where, when, and at which gap rate.
  *
- *   transversal   an impact: the gap vanishes with a rate below zero
- *   grazing       a gap whose minimum lies within grazing_tol of zero, `depth`. Above zero, and where the rate is zero
- *                 to rounding, nothing jumps; below it the impact law was applied to the small rate
- *   simultaneous  an impact within event_time_tol of another that does not couple with it: order does not matter
- *   coupled       an impact whose impulse depends on those of other contacts closed at that time (2.9); in sequence, in
- *                 another order, the outcome would differ
- *   chatter       an impact of a series whose intervals shrink like a geometric one: the rest of it is summed up.
- *                 `accumulation` is the time at which it ends
- *   rest          a contact begins to persist: gap and gap rate stay zero, held by a force
- *   release       that force has come down to zero and the contact opens
- *   contact       a compliant (Hertz) obstacle begins to press; nothing jumps
- *   parting       it ends to press */
+ *   transversal   an impact: the gap vanishes with a negative rate
+ *   grazing       a grazing contact: the minimum `depth` of the gap lies within grazing_tol of zero. If it is above
+ *                 zero (a near miss), or the rate is zero to rounding, nothing jumps; if it is below, the impact law
+ *                 was applied to the small rate
+ *   simultaneous  an impact within event_time_tol of another with which it does not couple: the order does not matter
+ *   coupled       an impact whose impulse depends on those of other contacts closed at that time ([FN97] (2.9)). The
+ *                 same impacts one after another, in some order, would give another result
+ *   chatter       an impact of a series that accumulates (Zeno behaviour): its intervals shrink geometrically and the
+ *                 rest of the series is summed. `accumulation` is the time at which it ends
+ *   rest          a contact begins to stick: gap and gap rate stay zero, held by a contact force
+ *   release       the contact force reaches zero and the contact opens
+ *   contact       onset of contact with a compliant (Hertz) obstacle; nothing jumps
+ *   parting       end of contact with a compliant obstacle */
 #ifndef RICOCHET_EVENT_H
 #define RICOCHET_EVENT_H
 
@@ -50,13 +51,13 @@ typedef struct ric_event {
   double gap_rate;     /* just before, <= 0 at impacts; 0 at grazing above zero, rest and release */
   double gap_rate_end; /* just after */
   double impulse;      /* along the gap's gradient, >= 0; NaN for impact maps of first-order systems */
-  double energy_loss;  /* that the impact took from the system, shared out over the contacts of one time; NaN where
-                          energy is not known */
-  double depth;        /* grazing: the minimum of the gap; NaN for other kinds */
-  double accumulation; /* chatter: when the impacts accumulate; NaN for other kinds */
+  double energy_loss;  /* energy dissipated by the impact, divided among simultaneous contacts; NaN where energy is
+                          unknown */
+  double depth;        /* grazing: minimum of the gap; NaN for other kinds */
+  double accumulation; /* chatter: time at which the impacts accumulate; NaN for other kinds */
 } ric_event;
 
-/** Whether the speeds jump at events of this kind. */
+/** Whether the speeds jump at this event. */
 static inline int ric_event_jumps(const ric_event *event) {
   return event->impulse != 0 && event->kind <= RIC_EVENT_CHATTER;
 }

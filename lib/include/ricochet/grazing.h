@@ -1,18 +1,19 @@
-/* Grazing periodic motions: where a family touches an obstacle, and the coefficients of the return map there.
+/* Grazing periodic motions: where a family reaches a grazing point, and the coefficients of the return map there.
  *
- * Along a parameter a periodic motion, without impacts or with transversal ones of its own, comes to touch an obstacle.
- * ric_grazing_find follows it there and makes the parameter exact; ric_grazing_section gives L, eta, xi and kappa of
- * [FN97] (5.5)-(5.8) on any section, for the criterion (grazing_criterion.h) and the map (grazing_map.h):
+ * Along a parameter a periodic motion, without impacts or with transversal ones of its own, begins to touch an
+ * obstacle: a grazing bifurcation. ric_grazing_find follows the motion there and refines the parameter to rounding.
+ * ric_grazing_section gives L, eta, xi and kappa of [FN97] (5.5)-(5.8) on any Poincare section, for the criterion
+ * (grazing_criterion.h) and the return map (grazing_map.h):
  *
  *   eta' = eta DPhi_t1 V,   xi' = W DPhi_t2 xi,   L' = W DPhi_T V,
  *
- * t1 from the section to the grazing point, t2 = T - t1, V the coordinates of the section and W = 1 - F sigma^T /
- * (sigma F) the projection onto it along the flow. Impacts on the way enter by saltation. kappa is that of the bypass
- * map (bypass.h) brought there in the same way, with what motion that is not linear makes of the square of y s xi on
- * it: the map then leaves out terms of third order in y.
+ * with t1 from the section to the grazing point, t2 = T - t1, the coordinate vectors V of the section and the
+ * projection W = 1 - F sigma^T / (sigma F) onto it along the flow. Impacts on the way enter by their saltation
+ * matrices. kappa is that of the discontinuity mapping (bypass.h) transported to the section in the same way,
+ * including the second-order term of the flow. The map then omits terms of third order in y.
  *
- * The state of a section: (x, t), n + m + 1 numbers, of forced motions; x, n + m numbers, of all others. Its
- * coordinates are one fewer. */
+ * A state on the section is (x, t), n + m + 1 numbers, for forced motions, and x, n + m numbers, for all others. The
+ * section has one coordinate less. */
 #ifndef RICOCHET_GRAZING_H
 #define RICOCHET_GRAZING_H
 
@@ -22,18 +23,18 @@
 
 RIC_BEGIN_DECLARATIONS
 
-/** A grazing periodic motion. Storage of the caller: ric_grazing_init, ric_grazing_clear. */
+/** A grazing periodic motion. Owned by the caller: ric_grazing_init, ric_grazing_clear. */
 typedef struct ric_grazing {
-  double parameter, second; /* the second one of families of two; else without meaning */
+  double parameter, second; /* the second one only for families with two parameters */
   double given;             /* the given number (shooting.h) there */
   double period;
-  double time;             /* of the touch, in [0, T) */
-  double phase;            /* over the period */
-  double slope;            /* by how much the minimum of the gap changes with the parameter: d = -slope (p - parameter)
-                              to first order. NaN where it was not asked for */
+  double time;  /* of the grazing point, in [0, T) */
+  double phase; /* time / period */
+  double slope; /* derivative of the minimum of the gap by the parameter: d = -slope (p - parameter) to first order. NaN
+                   if not requested */
   size_t numbers;          /* n + m */
-  double *x;               /* [n + m] state at the touch */
-  ric_grazing_local local; /* obstacle, A_g, eta, xi at the touch */
+  double *x;               /* [n + m] state at the grazing point */
+  ric_grazing_local local; /* obstacle, A_g, eta, xi at the grazing point */
   size_t unknowns;
   double *z; /* [unknowns] of shooting */
 } ric_grazing;
@@ -41,25 +42,25 @@ typedef struct ric_grazing {
 RIC_API ric_status ric_grazing_init(ric_grazing *grazing, const ric_shooting *shooting, ric_error *error);
 RIC_API void ric_grazing_clear(ric_grazing *grazing);
 
-/** All relative to how much the gap that is touched changes along the motion. */
+/** Tolerances, relative to the variation of the grazing gap along the motion. */
 typedef struct ric_grazing_options {
-  double touch_tol;   /* 1e-6: other minima of gaps within it of zero are second grazing points; no more than 0.01 in
-                         the unit of the gap */
+  double touch_tol; /* 1e-6: another minimum of a gap within it of zero is a second grazing point; at most 0.01 in units
+                       of the gap */
   double degenerate;  /* 1e-6: A_g T^2 below it is `A_g near zero` */
-  double transversal; /* 1e-6: T times the gap rate of an impact of the motion below it is `not transversal` */
+  double transversal; /* 1e-6: an impact of the motion whose gap rate times T is below it is `not transversal` */
 } ric_grazing_options;
 
 RIC_API ric_grazing_options ric_grazing_options_default(void);
 
-/** Follows a family from a solution until it grazes, and makes the
- * grazing point exact: the gap's minimum is zero to rounding.
- *  @param family  of motions that are not even; its options decide the walk: where to, and how far
+/** Follows a family from a solution to its first grazing point and refines that point: the minimum of the gap is zero
+ *  to rounding.
+ *  @param family  of motions that are not even; its options control the continuation run: direction and bounds
  *  @param z  [unknowns] solution at `parameter`; changed
  *  @param options  NULL for the defaults
  *  @param grazing  initialised for the family's shooting; set, with its slope
- *  @returns RIC_EINVAL for even motions and options out of range; RIC_ENUMERIC when there is no grazing point on the
- * way, with how far the family got and why it ended, and for degenerate ones by name: A_g near zero, two grazing points
- * at once, an impact that is not transversal; as ric_family_follow. `grazing` is of no use then. */
+ *  @returns RIC_EINVAL for even motions and options out of range; RIC_ENUMERIC if the run finds no grazing point,
+ *           with how far it got and why it ended, and for degenerate points by name: A_g near zero, two grazing
+ *           points at once, an impact that is not transversal; as ric_family_follow. `grazing` is undefined then. */
 RIC_API ric_status ric_grazing_find(ric_family *family, double *z, double parameter, const ric_grazing_options *options,
                                     ric_grazing *grazing, ric_error *error);
 
@@ -98,53 +99,56 @@ RIC_API ric_status ric_grazing_search_along(ric_family *family, double *z, doubl
                                             const ric_grazing_options *options, ric_grazing_search *search,
                                             ric_grazing *grazing, ric_error *error);
 
-/** The same from a motion that grazes already, or nearly: a point of kind `grazing`, or of a curve in two parameters.
- *  @param z  [unknowns] @param obstacle, time  where it does: the minimum of the gap that is nearest to this time
+/** The same from a motion that grazes already, or nearly: a special point of kind `grazing`, or a point of a curve in
+ *  two parameters.
+ *  @param z  [unknowns]
+ *  @param obstacle, time  of the grazing point: the minimum of the gap nearest to this time is used
  *  @returns as ric_grazing_find */
 RIC_API ric_status ric_grazing_take(ric_family *family, const double *z, double parameter, size_t obstacle, double time,
                                     const ric_grazing_options *options, ric_grazing *grazing, ric_error *error);
 
-/** A section through the motion. */
+/** A Poincare section through the motion. */
 typedef struct ric_grazing_plane {
-  double time;          /* at which the motion is on it, in [0, T) */
-  const double *normal; /* sigma: [n + m + 1] in (x, t) of forced motions, [n + m] of all others. NULL: stroboscopic,
-                           across time, of forced motions; across the flow of all others */
+  double time;          /* at which the motion crosses it, in [0, T) */
+  const double *normal; /* sigma: [n + m + 1] in (x, t) for forced motions, [n + m] for all others. NULL: stroboscopic
+                           (t constant) for forced motions, normal to the flow for all others */
 } ric_grazing_plane;
 
-/** Numbers of a section's coordinates: of the map on it. */
+/** Number of coordinates of a section: the size of the map on it. */
 RIC_API size_t ric_grazing_coordinates(const ric_grazing *grazing, const ric_shooting *shooting);
 
-/** The coefficients on a section: of d = 0, and kappa with them.
- *  @param family  the system in its state at grazing (ric_grazing_find and _take leave it so)
- *  @param plane  NULL: stroboscopic, or across the flow, at t = 0; at the touch where the motion has an impact at t = 0
+/** The coefficients on a section: L, eta, xi at d = 0, and kappa.
+ *  @param family  with its system in the state at grazing (ric_grazing_find and _take leave it so)
+ *  @param plane  NULL: stroboscopic, or normal to the flow, at t = 0; at the grazing point if the motion has an
+ *         impact at t = 0
  *  @param map  initialised for ric_grazing_coordinates
- *  @param basis  [coordinates][numbers of the section's state], set to the orthonormal vectors V^T that the coordinates
- *                belong to: unit vectors on stroboscopic sections; may be NULL
- *  @returns RIC_EINVAL for a plane that the motion does not cross, or at an impact, and for systems with compliant
- *           obstacles, as ric_bypass_create; RIC_ENUMERIC where motions beside it, however near, have other impacts
- *           than it, or miss the section; as ric_shooting_transfer. */
+ *  @param basis  [coordinates][numbers of the section's state], set to the orthonormal vectors V^T of the
+ *         coordinates: unit vectors on stroboscopic sections; may be NULL
+ *  @returns RIC_EINVAL for a plane that the motion does not cross, or crosses at an impact, and for systems with
+ *           compliant obstacles, as ric_bypass_create; RIC_ENUMERIC if neighbouring motions, however close, have
+ *           other impacts or miss the section; as ric_shooting_transfer. */
 RIC_API ric_status ric_grazing_section(ric_family *family, const ric_grazing *grazing, const ric_grazing_plane *plane,
                                        ric_grazing_map *map, double *basis, ric_error *error);
 
-/** A point of a curve of grazing motions. What it points to is valid during the callback. */
+/** A point of a curve of grazing motions. Its pointers are valid during the callback. */
 typedef struct ric_grazing_curve_point {
-  const ric_grazing *grazing; /* with its parameters; the slope is NaN */
+  const ric_grazing *grazing; /* with both parameters; the slope is NaN */
   const ric_grazing_criterion *criterion;
   const double *coefficients; /* [count] c_0, c_1, ... */
   size_t count;
-  size_t zero; /* i of the c_i that changes its sign there: the verdict may change; SIZE_MAX: none */
+  size_t zero; /* i of the c_i that changes sign there: the verdict may change; SIZE_MAX: none */
 } ric_grazing_curve_point;
 
-/** Follows a grazing point in two parameters and evaluates the criterion along the curve; zeros of c_0 ... are located
- *  on it.
- *  @param family  of two parameters
+/** Follows a grazing point in two parameters and evaluates the criterion along the curve. Zeros of c_0, c_1, ... are
+ *  located on it.
+ *  @param family  with two parameters
  *  @param from  a grazing motion of it
  *  @param options  of the curve, whose parameter is the second one; NULL for those of the family
  *  @param count  of coefficients, at most RIC_GRAZING_CURVE_COEFFICIENTS
- *  @param seen  sees every point; non-zero ends the walk. Where a step comes to no verdict, for want of a minimum of
- *               the gap or of eigenvalues, the walk ends, and its run says why
- *  @returns as ric_family_trace, and as ric_grazing_section and ric_grazing_criterion_find where a point that is to be
- *           shown has none; RIC_EINVAL. */
+ *  @param seen  called with every point; non-zero ends the run. If no verdict can be computed at a step, because the
+ *         gap has no minimum or eigenvalues fail, the run ends and gives the reason
+ *  @returns as ric_family_trace, and as ric_grazing_section and ric_grazing_criterion_find if they fail at a point
+ *           that is to be passed to `seen`; RIC_EINVAL. */
 RIC_API ric_status ric_grazing_trace(ric_family *family, const ric_grazing *from, const ric_curve_options *options,
                                      size_t count, int (*seen)(const ric_grazing_curve_point *point, void *user),
                                      void *user, ric_curve_run *run, ric_error *error);

@@ -7,9 +7,9 @@
  *
  *   f(x, x') = linear x + quadratic x^2 + cubic x^3 + damping x',
  *
- * so that potentials are quadratic, cubic and quartic. Ends: `periodic` (link 0 joins the last particle and the first;
- * rings of one and two particles are chains with free ends), `fixed` (links 0 and n join the ends to walls at 0),
- * `free` (links 0 and n are not there). The chain of [JAP] (1) has masses 1, on-site springs 1 and links gamma. */
+ * so that potentials have quadratic, cubic and quartic terms. Ends: `periodic` (link 0 joins the last particle and the
+ * first; rings of one and two particles are chains with free ends), `fixed` (links 0 and n join the ends to walls at
+ * 0), `free` (links 0 and n do not exist). The chain of [JAP] (1) has masses 1, on-site springs 1 and links gamma. */
 #ifndef RICOCHET_LATTICE_H
 #define RICOCHET_LATTICE_H
 
@@ -24,8 +24,8 @@ typedef struct ric_spring {
   double damping;                  /* force per rate of extension, >= 0 */
 } ric_spring;
 
-/** A lattice. Plain data; ric_lattice_check says whether it makes sense. Arrays replace the one value for all when not
- *  NULL; they are borrowed. */
+/** A lattice. Plain data; ric_lattice_check validates it. An array that is not NULL replaces the single value for all
+ *  particles; arrays are borrowed. */
 typedef struct ric_lattice {
   size_t particles; /* n >= 1 */
   ric_ends ends;
@@ -42,7 +42,7 @@ typedef struct ric_lattice {
 /** Uncoupled particles of mass 1 on linear springs of stiffness 1. */
 RIC_API ric_lattice ric_lattice_default(size_t particles, ric_ends ends);
 
-/** The lattice of a chain (its floors are obstacles, and left out). */
+/** The lattice of a chain, without its floors: these are obstacles. */
 RIC_API ric_lattice ric_lattice_of_chain(const ric_chain *chain);
 
 /** @returns RIC_EINVAL naming the first field that is out of range: masses not positive, values not finite. */
@@ -56,7 +56,7 @@ static inline ric_spring ric_lattice_on_site(const ric_lattice *lattice, size_t 
   return lattice->on_sites ? lattice->on_sites[particle] : lattice->on_site;
 }
 
-/** Link i, 0 <= i <= n, with zeros where the ends say that there is none; on a ring links 0 and n are the same. */
+/** Link i, 0 <= i <= n; zeros where the ends have no link. On a ring links 0 and n are the same. */
 RIC_API ric_spring ric_lattice_link(const ric_lattice *lattice, size_t i);
 
 /** Accelerations [n] at time t, positions q [n] and velocities v [n], without obstacles. */

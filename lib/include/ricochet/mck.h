@@ -1,7 +1,7 @@
 /* Linear mechanical systems M q'' + C q' + K q = F cos(w t) + G sin(w t), of any structure.
  *
  * M is dense, symmetric and positive definite, or diagonal in sparse form; C and K are dense or sparse and need not be
- * symmetric (the energy q'^T M q' / 2 + q^T K q / 2 has its meaning when K is). */
+ * symmetric (the energy q'^T M q' / 2 + q^T K q / 2 is meaningful if K is symmetric). */
 #ifndef RICOCHET_MCK_H
 #define RICOCHET_MCK_H
 
@@ -27,8 +27,8 @@ typedef struct ric_mck {
 } ric_mck;
 
 /** @returns RIC_EINVAL naming the matrix and entry: not finite, a column out of range, a mass matrix that is not
- *  symmetric, a sparse one that is not diagonal. Whether a dense one is positive definite is seen when a system is made
- *  of it. */
+ *  symmetric, a sparse one that is not diagonal. Whether a dense one is positive definite is tested when a system is
+ *  created from it. */
 RIC_API ric_status ric_mck_check(const ric_mck *mck, ric_error *error);
 
 RIC_END_DECLARATIONS

@@ -1,11 +1,11 @@
-/* Obstacles: where a coordinate of a lattice or of an M-C-K system may not go.
+/* Obstacles: bounds for coordinates of lattices and M-C-K systems.
  *
  * Obstacle j stands at coordinate i(j) at `position` b and has a side: a floor (side +1) keeps q_i >= b, a wall
  * (side -1) keeps q_i <= b. Its gap is h = side (q_i - b), its gap rate h' = side q'_i. A coordinate may have several.
  *
- * Rigid (stiffness infinite): an impact, h = 0 and h' < 0, gives h'+ = -e h'- with the restitution 0 <= e <= 1, and a
- * contact that persists carries a force lambda >= 0 that holds the coordinate at b. Compliant (stiffness k finite): no
- * jump, but Hertz's force k max(0, -h)^{3/2} that pushes the coordinate out [JAP]. */
+ * Rigid (stiffness infinite): an impact, h = 0 and h' < 0, gives h'+ = -e h'- with the restitution 0 <= e <= 1. A
+ * contact that sticks (persists) carries a force lambda >= 0 that holds the coordinate at b. Compliant (stiffness k
+ * finite): no jump, but the Hertz force k max(0, -h)^{3/2} pushes the coordinate out [JAP]. */
 #ifndef RICOCHET_OBSTACLE_H
 #define RICOCHET_OBSTACLE_H
 
@@ -20,7 +20,7 @@ typedef struct ric_obstacle {
   size_t coordinate;
   int side;           /* +1: floor, -1: wall */
   double position;    /* b, finite */
-  double restitution; /* e in [0, 1]; without meaning for a compliant obstacle */
+  double restitution; /* e in [0, 1]; unused for a compliant obstacle */
   double stiffness;   /* INFINITY: rigid; k > 0: Hertz's law */
 } ric_obstacle;
 

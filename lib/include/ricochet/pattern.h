@@ -1,7 +1,7 @@
-/* Impact patterns: which particles of a chain hit their floor, and at which half of the period ([JAP] (4)-(6)).
+/* Impact patterns: which particles of a chain hit their floor, and when in the period ([JAP] (4)-(6)).
  *
  * `start` is I2, the particles that hit at t = 0 mod T; `half` is I1, those that hit at t = T/2 mod T; all others are
- * free (I0). Two patterns are equivalent when a symmetry of the chain takes one to the other: shifts (rings), the
+ * free (I0). Two patterns are equivalent if a symmetry of the chain maps one to the other: shifts (rings), the
  * reflection i -> n - 1 - i, and the exchange of the two halves of the period, t -> t + T/2. Their orbits are images of
  * one another. */
 #ifndef RICOCHET_PATTERN_H
@@ -18,7 +18,7 @@ typedef enum ric_role { RIC_ROLE_FREE, RIC_ROLE_START, RIC_ROLE_HALF } ric_role;
 
 typedef struct ric_pattern ric_pattern;
 
-/** @param start, half  particles that hit at t = 0 and at t = T/2, in any order, which later results keep. Copied
+/** @param start, half  particles that hit at t = 0 and at t = T/2, in any order; results keep this order. Copied
  *  @returns RIC_EINVAL for an index out of range, one given twice or in both, or no impact at all. */
 RIC_API ric_status ric_pattern_create(size_t particles, const size_t *start, size_t start_count, const size_t *half,
                                       size_t half_count, ric_pattern **pattern, ric_error *error);
@@ -47,8 +47,8 @@ typedef struct ric_symmetry {
 RIC_API ric_status ric_pattern_image(const ric_pattern *pattern, ric_ends ends, ric_symmetry symmetry,
                                      ric_pattern **image, ric_error *error);
 
-/** The symmetry that takes a pattern to its canonical representative: of all its images the one whose word of roles
- *  (start < half < free, read from particle 0) comes first. Equivalent patterns have equal representatives. O(n). */
+/** The symmetry that maps a pattern to its canonical representative: the image whose sequence of roles (start < half <
+ *  free, from particle 0) is lexicographically smallest. Equivalent patterns have equal representatives. O(n). */
 RIC_API ric_status ric_pattern_reduce(const ric_pattern *pattern, ric_ends ends, ric_symmetry *symmetry,
                                       ric_error *error);
 

@@ -1,8 +1,9 @@
-/* Ricochet: periodic motions, grazing bifurcations and parameter sweeps of impact oscillators.
+/* Ricochet: simulation, continuation and bifurcation analysis of impact oscillators.
  *
  * Source keys in the comments: [JAP] periodic motions of coupled impact oscillators, [VID] nonlinear modes of
  * vibro-impact Duffing oscillators, [FN97] grazing bifurcations in many-degree-of-freedom impact oscillators; full
- * references in docs/theory.md. Numbers in round brackets are equations there. */
+ * references in docs/theory.md. Numbers in round brackets are equations there. docs/glossary.md maps their words to the
+ * terms of the field. */
 #ifndef RICOCHET_H
 #define RICOCHET_H
 

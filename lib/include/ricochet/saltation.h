@@ -1,22 +1,22 @@
-/* Saltation: how small differences of a state go through an impact.
+/* Saltation matrices: the derivative of the state after an impact by the state before it, at equal times.
  *
- * A motion x that differs by d just before an impact reaches the obstacle earlier or later by tau, grad h . d + tau h'-
- * = 0. Meanwhile it has moved with the rates F- before the impact, or will move with F+ after it, so that at equal
- * times
+ * A motion whose state differs by d just before an impact reaches the obstacle later by tau, where grad h . d + tau
+ * h'- = 0. In this time it moves with the rates F- before the impact instead of F+ after it, so that at equal times
  *
  *   d+ = S d = DG (d + F- tau, tau) - F+ tau,    S = R + (F+ - R F- - G_t) (grad h)^T / h'-              [JAP] (16)
  *
- * with DG the full derivative of the impact map G(x, t) = (q, u+), R its part in the state and G_t that in time. For
- * generalised coordinates R contains the derivatives of M, B and the gap's gradient, by differences; for obstacles at
- * coordinates it is exact. F+ belongs to what follows: a contact that comes to rest is held, and S then is singular.
+ * with the full derivative DG of the impact map G(x, t) = (q, u+), its part R with respect to the state and its part
+ * G_t with respect to time. For generalised coordinates R contains the derivatives of M, B and the gap's gradient, by
+ * differences; for obstacles at coordinates it is exact. F+ belongs to the motion that follows: if the contact begins
+ * to stick, it is held and S is singular.
  *
- * S blows up as 1 / h'-: where the contact comes in slowly the linear picture ends, and the outcome is `grazing`.
+ * S grows as 1 / h'-. If the impact is too slow, linearisation fails and the outcome is `grazing`.
  *
- * Several impacts at one time happen one after the other in a neighbouring motion, in an order that depends on the
- * difference. Where contacts do not couple and no force on one impacting mass depends on the speed of another, all
- * orders have the same product of matrices, and the motion is differentiable; second differences are of first order in
- * the step only. Otherwise there are one-sided derivatives, `not_differentiable`; where contacts couple even the state
- * after the impacts depends on the order. */
+ * In a neighbouring motion simultaneous impacts happen one after the other, in an order that depends on the
+ * difference. If contacts do not couple and no force on one impacting mass depends on the speed of another, the
+ * matrices of all orders have the same product and the motion is differentiable; second differences are then only of
+ * first order in the step. Otherwise there are one-sided derivatives, `not_differentiable`; if contacts couple, even
+ * the state after the impacts depends on the order. */
 #ifndef RICOCHET_SALTATION_H
 #define RICOCHET_SALTATION_H
 
@@ -41,16 +41,16 @@ typedef enum ric_saltation_kind {
 /** Name of a kind, "differentiable". Never NULL. */
 RIC_API const char *ric_saltation_name(ric_saltation_kind kind);
 
-/** Saltation matrix of impacts at one time, no rigid contact persisting before or after.
+/** Saltation matrix of simultaneous impacts, without rigid contacts that stick before or after.
  *  @param q, u  [n], [m] state before, gaps of the obstacles zero
  *  @param obstacles  [count] that are hit
- *  @param grazing_tol  > 0: gap rates below it, and impacts that would go no deeper than it, are grazing
- *  @param S  [n + m][n + m] row-major, state (q, u): impacts in the order given. With coupled contacts, until none
- *            comes in any more. Untouched when grazing
- *  @param S_reverse  the same in reverse order; NULL: not wanted
- *  @param kind  set; the matrices of the two orders count as equal within 1e-9 of their size
- *  @returns RIC_EINVAL for an unknown or compliant obstacle or a gap rate >= 0; RIC_ELIMIT when coupled contacts do not
- * come apart; RIC_ECALLBACK, RIC_ENOMEM. */
+ *  @param grazing_tol  > 0: impacts with a gap rate below it, or a penetration depth below it, are grazing
+ *  @param S  [n + m][n + m] row-major, state (q, u): impacts in the order given, repeated for coupled contacts until no
+ *            gap rate is negative. Unchanged if grazing
+ *  @param S_reverse  the same in reverse order; NULL: not computed
+ *  @param kind  set; matrices of the two orders that agree within 1e-9 of their size count as equal
+ *  @returns RIC_EINVAL for an unknown or compliant obstacle or a gap rate >= 0; RIC_ELIMIT if coupled contacts do not
+ *  separate; RIC_ECALLBACK, RIC_ENOMEM. */
 RIC_API ric_status ric_saltation_find(const ric_system *system, double t, const double *q, const double *u,
                                       const size_t *obstacles, size_t count, double grazing_tol, double *S,
                                       double *S_reverse, ric_saltation_kind *kind, ric_error *error);

@@ -1,10 +1,10 @@
-/* A segment of motion: one polynomial per coordinate on a time interval.
+/* A segment of a motion: one polynomial per coordinate on a time interval.
  *
- * Every flow hands out segments, and everything that looks for contacts, minima or states looks at segments. With
- * x = (t - start) / length in [0, 1], coordinate i of the segment is q_i(t) = sum_j coef[j * stride + i] x^j. A segment
- * may cover a stretch of a long chain: `first` is the particle of its coordinate 0. A negative length runs back in
- * time. Speeds of the state that are no derivatives of coordinates are polynomials of their own, after those of the
- * coordinates. */
+ * Every flow hands out segments; contacts, minima and states are computed from segments only. With x = (t - start) /
+ * length in [0, 1], coordinate i of the segment is q_i(t) = sum_j coef[j * stride + i] x^j. A segment may cover a
+ * part of a long chain: `first` is the particle of its coordinate 0. A negative length means integration backwards in
+ * time. Speeds that are not derivatives of coordinates have polynomials of their own, after those of the coordinates.
+ */
 #ifndef RICOCHET_SEGMENT_H
 #define RICOCHET_SEGMENT_H
 
@@ -17,7 +17,7 @@ RIC_BEGIN_DECLARATIONS
 typedef struct ric_segment {
   size_t first;       /* particle of coordinate 0 */
   size_t coordinates; /* number of coordinates */
-  size_t speeds;      /* number of speeds with polynomials of their own; 0: speeds are the derivatives */
+  size_t speeds;      /* number of speeds with polynomials of their own; 0: speeds are derivatives of coordinates */
   size_t stride;      /* >= coordinates + speeds */
   int degree;         /* <= RIC_POLY_DEGREE */
   double start;       /* time at x = 0 */
@@ -25,8 +25,8 @@ typedef struct ric_segment {
   const double *coef; /* [degree + 1][stride]. Borrowed from the flow, valid until its next step */
 } ric_segment;
 
-/** Coordinates q [coordinates] and speeds at x in [0, 1]; v is [speeds], or [coordinates] when speeds are the
- *  derivatives; it may be NULL. */
+/** Coordinates q [coordinates] and speeds at x in [0, 1]; v is [speeds], or [coordinates] if speeds are derivatives of
+ *  coordinates; it may be NULL. */
 RIC_API void ric_segment_state(const ric_segment *segment, double x, double *q, double *v);
 
 /** Gap of a coordinate over a floor, q_i - b, as a polynomial c [degree + 1]. */

@@ -1,9 +1,9 @@
 /* Status codes, the error object and the poll callback.
  *
- * A function that can fail returns a ric_status and takes a `ric_error *` as its last parameter, which may be NULL. The
- * code is what a caller branches on; the sentence in the error object carries the value received and what is allowed.
- * The library never prints, exits or keeps a global. An outcome is not an error: an orbit that is inadmissible or
- * singular is a result with a named reason (orbit.h). */
+ * A function that can fail returns a ric_status and takes a `ric_error *` as its last parameter, which may be NULL.
+ * Callers branch on the code; the sentence in the error object states the value received and what is allowed. The
+ * library never prints, never exits and has no global state. An outcome is not an error: an orbit that is inadmissible
+ * or singular is a result with a named reason (orbit.h). */
 #ifndef RICOCHET_STATUS_H
 #define RICOCHET_STATUS_H
 
@@ -53,14 +53,14 @@ RIC_API ric_status ric_fail(ric_error *error, ric_status status, const char *for
       return ric_try_status;                                                                                           \
   } while (0)
 
-/** Called at least once per flow step or matrix factorisation of a long computation, so that the caller can look at
+/** Called at least once per flow step or matrix factorisation of a long computation, so that the caller can check
  *  signals, time limits and messages. Non-zero stops the computation with RIC_ESTOPPED. */
 typedef struct ric_poll {
-  int (*call)(void *user); /* NULL: never asked */
+  int (*call)(void *user); /* NULL: never called */
   void *user;
 } ric_poll;
 
-/** Asks the poll callback. */
+/** Calls the poll callback; non-zero: stop. */
 static inline int ric_poll_stops(ric_poll poll) {
   return poll.call != NULL && poll.call(poll.user) != 0;
 }

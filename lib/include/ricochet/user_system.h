@@ -1,6 +1,6 @@
-/* Systems that a user writes, in the two forms of [FN97] sections 2 and 3.
+/* Systems defined by the user, in the two forms of [FN97] sections 2 and 3.
  *
- * Mechanical: generalised coordinates q [n] and speeds u [m], m <= n (non-holonomic systems too),
+ * Mechanical: generalised coordinates q [n] and speeds u [m], m <= n (non-holonomic systems included),
  *
  *   M(q, t) u' = f(q, u, t),    q' = B(q, t) u + b(q, t),                                          [FN97] (2.3), (2.4)
  *
@@ -8,18 +8,18 @@
  *
  *   u+ = u- + M^-1 I,   I = -(1 + e) h'- g / (g^T M^-1 g),   g = B^T grad_q h,                              (2.9)
  *
- * so that h'+ = -e h'-; a contact that persists carries a force lambda g with lambda >= 0.
+ * so that h'+ = -e h'-; a contact that sticks (persists) carries a force lambda g with lambda >= 0.
  *
- * First order: x' = F(x, t), gaps h_j(x, t), and an impact map G per obstacle that turns the state before an impact
- * into the one after. A contact that persists pushes along the direction in which G moves the state when the gap rate
- * is small: G must be smooth there, on the side of gap rates below zero, and tend to the identity. What stands for the
- * restitution is -h'+ / h'- of the last impact, 1 before any.
+ * First order: x' = F(x, t), gaps h_j(x, t), and an impact map G per obstacle that gives the state after an impact
+ * from the state before. The force of a contact that sticks acts along the direction in which G moves the state at
+ * small gap rates: G must be smooth there, for negative gap rates, and tend to the identity. The restitution of such
+ * a contact is -h'+ / h'- of the last impact, 1 before any.
  *
- * Callbacks return 0, or non-zero to end the run with the outcome `callback_failed`; values that are not finite do the
- * same. They are called in any order of times. Optional callbacks may be NULL: derivatives then come from central
- * differences, about ten digits where gaps change over lengths and times of order one (steps of about 1e-3; so do the
- * derivatives of gap rates that persistent contacts and chatter need, always): make systems dimensionless with that in
- * mind. It costs digits of impact speeds where gaps are curved. */
+ * Callbacks return 0, or non-zero to end the run with the outcome `callback_failed`; values that are not finite have
+ * the same effect. They are called at times in any order. Optional callbacks may be NULL: derivatives are then
+ * central differences, with about ten digits if gaps change over lengths and times of order one (steps are about
+ * 1e-3). The derivatives of gap rates for sticking and chatter are always differences. So scale systems to be
+ * dimensionless. Differences cost digits of impact speeds where gaps are curved. */
 #ifndef RICOCHET_USER_SYSTEM_H
 #define RICOCHET_USER_SYSTEM_H
 

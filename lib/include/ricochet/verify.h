@@ -1,8 +1,9 @@
-/* The verifier: an event-driven run over one period against what an orbit promises.
+/* The verifier: an event-driven run over one period, compared with the predicted impacts of an orbit.
  *
- * However an orbit was found, the same three questions decide: does the motion return to where it began (closure), does
- * every promised impact happen at its time on its obstacle, and does nothing else touch? The run knows nothing of the
- * method that found the orbit. */
+ * However an orbit was found, three questions decide: does the motion return to its initial state (closure), does
+ * every predicted impact happen at its time on its obstacle, and is there no other impact? The run does not depend on
+ * the method that found the orbit. Impacts, with times and obstacles, and the period are those of the orbit; the run
+ * begins at any time that is not one of an impact. */
 #ifndef RICOCHET_VERIFY_H
 #define RICOCHET_VERIFY_H
 
@@ -35,40 +36,38 @@ typedef struct ric_verification {
   char reason[320];     /* which impact, when, by how much; "" when verified */
   double closure_error; /* largest difference of coordinates and speeds after one period, relative to the largest
                            coordinate and speed; NaN when not run */
-  size_t impacts;       /* that happened */
+  size_t impacts;       /* number that happened */
 } ric_verification;
 
-/** An impact that an orbit promises. */
-typedef struct ric_promise {
-  double time; /* within (start, start + period) */
-  size_t obstacle;
-} ric_promise;
-
 typedef struct ric_verify_options {
-  double closure_tol;            /* 1e-8: closure errors above it are `not_closed`; the errors of a strongly unstable
-                                    orbit grow by its largest multiplier within the period */
+  double closure_tol; /* 1e-8: larger closure errors are `not_closed`; errors of a strongly unstable orbit grow by its
+                         largest multiplier within the period */
   double impact_time_tol;        /* 1e-7, relative to the period */
-  ric_trajectory_options motion; /* how the run is made */
+  ric_trajectory_options motion; /* options of the run */
 } ric_verify_options;
 
 RIC_API ric_verify_options ric_verify_options_default(void);
 
-/** Verifies a periodic motion of any system.
- *  @param start  time of the state; must not be that of an impact
+/** Verifies a periodic motion of any system. A run that cannot begin, or ends early, is `run_failed`; the outcome of
+ * the orbit and its arrays of states are not read.
+ *  @param orbit  its period, impact_time and impact_obstacle are read
+ *  @param start  time of the state, farther than impact_time_tol from every impact
  *  @param q, u  [n], [m] state there
- *  @param promises  [count] in order of time
  *  @param options  NULL for the defaults
- *  @returns RIC_OK with a result; RIC_EINVAL for a period that is not positive, promises of unknown obstacles or
- * outside the period; errors of ric_trajectory_create and RIC_ESTOPPED. */
-RIC_API ric_status ric_verify(const ric_system *system, double start, const double *q, const double *u, double period,
-                              const ric_promise *promises, size_t count, const ric_verify_options *options,
-                              ric_verification *verification, ric_error *error);
+ *  @returns RIC_OK with a result; RIC_EINVAL for an orbit of other numbers of coordinates or speeds, a period that is
+ *           not positive, unknown obstacles, an impact at `start`; RIC_EINVAL for options as ric_trajectory_create,
+ *           RIC_ENOMEM, RIC_ESTOPPED. */
+RIC_API ric_status ric_verify(const ric_system *system, const ric_orbit *orbit, double start, const double *q,
+                              const double *u, const ric_verify_options *options, ric_verification *verification,
+                              ric_error *error);
 
-/** Verifies an orbit of a chain with its pattern, from t = T/4 on, halfway between its impacts.
- *  @param solver  gives the state there */
-RIC_API ric_status ric_orbit_verify(ric_orbit_solver *solver, const ric_chain *chain, const ric_pattern *pattern,
-                                    const ric_orbit *orbit, const ric_verify_options *options,
-                                    ric_verification *verification, ric_error *error);
+/** Verifies an orbit of a chain, from t = T/4 on, halfway between its impacts; `not_run` unless it is admissible. Those
+ *  of shooting: ric_shooting_verify.
+ *  @param solver  gives the state there
+ *  @returns as ric_verify, ric_orbit_states. */
+RIC_API ric_status ric_orbit_verify(ric_orbit_solver *solver, const ric_chain *chain, const ric_orbit *orbit,
+                                    const ric_verify_options *options, ric_verification *verification,
+                                    ric_error *error);
 
 RIC_END_DECLARATIONS
 

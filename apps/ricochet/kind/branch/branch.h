@@ -79,4 +79,9 @@ typedef struct branch_curve_point {
  *  @param traced  that of the second one, borrowed; NULL without curves */
 void branch_lay_out(const study_values *v, const char *followed, const char *traced, kind_plan *plan);
 
+/** Whether a study of kind `branch` says that it starts from a result. */
+bool branch_restarts(const study *s);
+/** Exchanges it for the complete one (kind.h). */
+int branch_resolve(study **s, const study_source *from, message *why);
+
 #endif

@@ -9,6 +9,7 @@
 
 #include "kind/family/curve_trace.h"
 #include "kind/family/family_task.h"
+#include "kind/family/family_check.h"
 #include "kind/machine.h"
 
 struct worker {
@@ -68,7 +69,7 @@ static int branch_plan(const study *s, kind_plan *plan, message *why) {
   if (!code)
     code = machine_refuse_size(s, "a branch", plan->memory, why);
   if (!code)
-    branch_lay_out(v, study_followed(s)->name, study_traced(s)->key == KEY_COUNT ? NULL : study_traced(s)->name, plan);
+    branch_lay_out(v, family_followed(s)->name, family_traced(s) ? family_traced(s)->name : NULL, plan);
   study_values_destroy(&v);
   return code ? code : family_task_check(s, why);
 }
@@ -199,7 +200,7 @@ typedef struct curve_origin {
 
 /* Whether the study wants curves through special points of this kind. */
 static bool is_traced(const branch_family *b, ric_family_kind what) {
-  const char *words = schema_row(KEY_BRANCH_TRACE_KINDS)->words, *name = ric_family_kind_name(what);
+  const char *words = KEY_BRANCH_TRACE_KINDS->words, *name = ric_family_kind_name(what);
   const long place = schema_find_word(name, strlen(name), words);
   for (size_t i = 0; b->traced && i < value_count(b->values, KEY_BRANCH_TRACE_KINDS); i++)
     if (value_number(b->values, KEY_BRANCH_TRACE_KINDS, i) == (double)place)
@@ -354,7 +355,42 @@ static int branch_evaluate(worker *w, const kind_plan *plan, task_range tasks, u
   return 0;
 }
 
-const kind kind_branch = {.name = "branch",
+/* --- its keys --- */
+
+bool branch_restarts(const study *s) {
+  return study_is_kind(s, "branch") && study_value(s, KEY_RESTART_FILE)->present;
+}
+
+/* Where a branch restarts, what it takes from there is not known yet, and how its keys fit together not checked. */
+static int check_restart(const study *s, const document *d, message *why) {
+  const bool special = study_has(s, KEY_RESTART_SPECIAL), point = study_has(s, KEY_RESTART_POINT);
+  if (special != point)
+    return 0;
+  return document_refuse(d, check_node_of_key(s, special ? KEY_RESTART_SPECIAL : KEY_RESTART_FILE), why,
+                         "restart has %s special %s point, expected one of the two", special ? "both" : "neither",
+                         special ? "and" : "nor");
+}
+
+static int branch_check(const study *s, const document *d, message *why) {
+  return branch_restarts(s) ? check_restart(s, d, why) : family_check(s, d, why);
+}
+
+static bool branch_wants(const study *s, const document *d, study_key key) {
+  return !(key == KEY_ORBIT_PERIOD && branch_restarts(s)) && family_wants(s, d, key);
+}
+
+extern const kind kind_branch;
+extern const char chapter_branch[];
+
+const kind kind_branch = {.choice = {.name = "branch",
+                                     .summary = "a family of periodic motions along a parameter",
+                                     .chapter = chapter_branch,
+                                     .groups = "pattern|start|family|trace|branch",
+                                     .features = MODEL_SYSTEM,
+                                     .complete = family_complete,
+                                     .wants = branch_wants,
+                                     .check = branch_check},
+                          .resolve = branch_resolve,
                           .plan = branch_plan,
                           .open = branch_open,
                           .evaluate = branch_evaluate,

@@ -96,7 +96,7 @@ static int put_attractors(const sorting *k, records *found) {
 
 int basin_attractors(const study *s, const kind_plan *plan, const row_source *done, ric_poll poll, extra_rows *extra,
                      message *why) {
-  sorting k = {.plan = plan, .size = study_state_size(s)};
+  sorting k = {.plan = plan, .size = diagram_state_size(s)};
   records found = {0};
   int code = lay_out(&k, s) == 0 ? sort_all(&k, s, done, poll, why)
                                  : refuse(why, EXIT_RUN, "%s: no memory for the attractors", study_name(s));

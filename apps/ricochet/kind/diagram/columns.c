@@ -59,10 +59,10 @@ void diagram_lay_out(const study *s, const study_values *v, table *rows) {
     axes[count++] = (table_axis){"exponent", exponents};
   if (keep > 0)
     axes[count++] = (table_axis){"iterate", keep};
-  axes[count++] = (table_axis){"coordinate", study_state_size(s)};
+  axes[count++] = (table_axis){"coordinate", diagram_state_size(s)};
   *rows = (table){.group = study_kind(s), .row_axis = "task"};
   table_add(rows, columns, sizeof columns / sizeof *columns, axes, count);
-  if (study_is_beyond(s))
+  if (diagram_is_beyond(s))
     table_add(rows, beyond_columns, sizeof beyond_columns / sizeof *beyond_columns, axes, count);
   if (exponents == 0) {
     table_drop(rows, "lyapunov");

@@ -28,6 +28,15 @@ typedef struct diagram_row {
   double distance;
 } diagram_row;
 
+/** What `show` says of a result (kind.h). */
+result_card diagram_show, basin_show;
+
+/* Its keys (schema_choice). */
+int diagram_complete(study *s, const document *d, message *why);
+bool diagram_wants(const study *s, const document *d, study_key key);
+int diagram_check(const study *s, const document *d, message *why);
+int basin_check(const study *s, const document *d, message *why);
+
 /** A row of zeros, and the attractor that is to be put into it: its arrays are those of the row, where it has them. */
 diagram_row diagram_begin_row(const table *rows, unsigned char *row, ric_attractor *attractor);
 

@@ -1,4 +1,5 @@
 #include "iterated.h"
+#include "kind/keys.h"
 
 #include <math.h>
 #include <ricochet/ricochet.h>
@@ -7,7 +8,7 @@
 #include <string.h>
 #include <time.h>
 
-#include "model/map_model.h"
+#include "model/grazing_map.h"
 
 /* The library's clock, for trials of its variants. */
 static double seconds(void *user) {
@@ -25,7 +26,7 @@ enum {
 };
 
 size_t iterated_slots(const study *s) {
-  return study_is_map(s) ? MAP_SLOTS : 1;
+  return model_has(s, MODEL_MAP) ? MAP_SLOTS : 1;
 }
 
 /* Iterates that decide on the longest period of all tasks. */
@@ -40,9 +41,9 @@ static double deciding(const study *s, const study_values *v) {
 }
 
 double iterated_bytes(const study *s, const study_values *v) {
-  const double size = (double)study_state_size(s), states = 8 * size * deciding(s, v);
-  return study_is_map(s) ? MAP_SLOTS * 8 * (2 * size * (size + 8)) + MAP_LANES * states
-                         : size * (MOTION_BYTES + LATTICE_MODEL_BYTES) + states;
+  const double size = (double)diagram_state_size(s), states = 8 * size * deciding(s, v);
+  return model_has(s, MODEL_MAP) ? MAP_SLOTS * 8 * (2 * size * (size + 8)) + MAP_LANES * states
+                                 : size * (MOTION_BYTES + LATTICE_MODEL_BYTES) + states;
 }
 
 /* --- storage ------------------------------------------------------------------------------------------------------ */
@@ -52,18 +53,18 @@ static size_t exponents_of(const iterated *it) {
 }
 
 static bool allocate(iterated *it) {
-  if (!study_is_map(it->study))
+  if (!model_has(it->study, MODEL_MAP))
     return lattice_model_init(&it->model, it->values) == 0;
   it->maps = calloc(it->slots, sizeof *it->maps);
   return it->maps != NULL;
 }
 
 int iterated_init(iterated *it, const study *s, ric_poll poll, message *why) {
-  *it = (iterated){.study = s, .poll = poll, .size = study_state_size(s), .slots = iterated_slots(s)};
+  *it = (iterated){.study = s, .poll = poll, .size = diagram_state_size(s), .slots = iterated_slots(s)};
   it->values = study_values_create(s);
   if (!it->values || !allocate(it))
     return refuse(why, EXIT_RUN, "%s: no memory for a task", study_name(s));
-  if (study_is_beyond(s)) {
+  if (diagram_is_beyond(s)) {
     it->beyond = calloc(1, sizeof *it->beyond);
     return it->beyond ? beyond_init(it->beyond, s, poll, why)
                       : refuse(why, EXIT_RUN, "%s: no memory for a task", study_name(s));
@@ -105,7 +106,7 @@ static ric_attractor_options options_of(const iterated *it) {
   o.transient = (size_t)value_number(v, KEY_ITERATE_TRANSIENT, 0);
   o.keep = kept_of(it);
   o.measure = iterated_measured(it);
-  o.observe = study_observed(it->study);
+  o.observe = diagram_observed(it->study);
   o.exponents = exponents_of(it);
   o.period_limit = (size_t)value_number(v, KEY_ITERATE_PERIOD_LIMIT, 0);
   o.period_tol = value_number(v, KEY_ITERATE_PERIOD_TOL, 0);
@@ -118,7 +119,7 @@ static void take_map(iterated *it, iterated_map *slot, double *z) {
   slot->refused = (ric_error){0};
   slot->options = options_of(it);
   slot->d = value_number(v, KEY_MODEL_D, 0);
-  if (map_model_read(&slot->map, v, &slot->refused) == RIC_OK)
+  if (grazing_map_read(&slot->map, v, &slot->refused) == RIC_OK)
     ric_attractor_options_check(&slot->options, it->size, &slot->refused);
   for (size_t i = 0; i < it->size; i++)
     z[i] = value_number(v, KEY_ITERATE_START, value_is_list(v, KEY_ITERATE_START) ? i : 0);
@@ -140,7 +141,7 @@ double iterated_period(const lattice_model *model) {
 ric_status iterated_read_model(iterated *it, ric_error *error) {
   const ric_status status = it->beyond ? beyond_find(it->beyond, it->values, error) : RIC_OK;
   if (it->beyond && status == RIC_OK)
-    study_values_follow(it->values, beyond_parameter(it->beyond, it->values));
+    study_values_move(it->values, KEY_BRANCH_PARAMETER, beyond_parameter(it->beyond, it->values));
   lattice_model_read(&it->model, it->values);
   return status;
 }

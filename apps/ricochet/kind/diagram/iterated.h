@@ -7,6 +7,15 @@
 
 #include "beyond.h"
 
+/** Numbers of a state that such a study iterates: of the map, or of the section. */
+size_t diagram_state_size(const study *s);
+/** Which of them is observed. */
+size_t diagram_observed(const study *s);
+/** Whether it is a diagram that looks for grazing first, and says how far beyond it stands. */
+bool diagram_is_beyond(const study *s);
+/** Whether windows along its last sweep are to be listed. */
+bool diagram_has_windows(const study *s);
+
 /** A task that waits to be run, of a map. */
 typedef struct iterated_map {
   ric_grazing_map map;

@@ -198,14 +198,31 @@ static int diagram_evaluate(worker *w, const kind_plan *plan, task_range tasks, 
   return status == RIC_OK ? 0 : -1;
 }
 
-const kind kind_diagram = {.name = "diagram",
-                           .plan = diagram_plan,
-                           .open = diagram_open,
-                           .evaluate = diagram_evaluate,
-                           .close = diagram_close,
-                           .extra = diagram_windows};
+extern const kind kind_diagram, kind_basin;
+extern const char chapter_diagram[], chapter_basin[];
 
-const kind kind_basin = {.name = "basin",
+const kind kind_diagram = {
+    .choice = {.name = "diagram",
+               .summary = "the attractor of a map, or of a motion on a section, at every grid point",
+               .chapter = chapter_diagram,
+               .groups = "iterate|start|diagram|pattern|family",
+               .complete = diagram_complete,
+               .wants = diagram_wants,
+               .check = diagram_check},
+    .show = diagram_show,
+    .plan = diagram_plan,
+    .open = diagram_open,
+    .evaluate = diagram_evaluate,
+    .close = diagram_close,
+    .extra = diagram_windows};
+
+const kind kind_basin = {.choice = {.name = "basin",
+                                    .summary = "to which of the attractors every start of a grid comes",
+                                    .chapter = chapter_basin,
+                                    .groups = "iterate|start",
+                                    .complete = diagram_complete,
+                                    .check = basin_check},
+                         .show = basin_show,
                          .plan = diagram_plan,
                          .open = diagram_open,
                          .evaluate = diagram_evaluate,

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "diagram.h"
-#include "model/map_model.h"
+#include "model/grazing_map.h"
 
 /* Names of what ends a window, of maps or of motions. @param count  set */
 static const char *const *window_edge_names(const study *s, size_t *count) {
@@ -18,8 +18,8 @@ static const char *const *window_edge_names(const study *s, size_t *count) {
       RIC_FAMILY_LIST(X)
 #undef X
           "none"};
-  *count = study_is_map(s) ? RIC_GRAZING_EDGES + 1 : RIC_FAMILY_KINDS + 1;
-  return study_is_map(s) ? of_maps : of_motions;
+  *count = model_has(s, MODEL_MAP) ? RIC_GRAZING_EDGES + 1 : RIC_FAMILY_KINDS + 1;
+  return model_has(s, MODEL_MAP) ? of_maps : of_motions;
 }
 
 /* Index of the sweep that is followed: the last one. */
@@ -115,7 +115,7 @@ static ric_status map_at(double p, ric_grazing_map *map, double *d, void *user, 
   iterated *it = user;
   study_values_sweep(it->values, last_of(it), p);
   *d = value_number(it->values, KEY_MODEL_D, 0);
-  return map_model_read(map, it->values, error);
+  return grazing_map_read(map, it->values, error);
 }
 
 static ric_status put_parameter(ric_system *system, const double *p, double *given, void *user, ric_error *error) {
@@ -283,7 +283,7 @@ static int search_all(window_search *k, const study *s, ric_poll poll) {
 int diagram_windows(const study *s, const kind_plan *plan, const row_source *done, ric_poll poll, extra_rows *extra,
                     message *why) {
   window_search k = {.plan = plan, .done = done, .why = why};
-  if (!study_windows(s))
+  if (!diagram_has_windows(s))
     return 0;
   k.sweep = study_sweep_at(s, study_sweeps(s) - 1);
   lay_out(&k.layout, s);

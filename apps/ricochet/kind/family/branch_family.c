@@ -1,4 +1,6 @@
 #include "branch_family.h"
+#include "family_check.h"
+#include "kind/keys.h"
 
 #include <float.h>
 #include <math.h>
@@ -68,13 +70,13 @@ static bool is_of_model(const study_parameter *p) {
 /* Puts the parameters into the values. */
 static ric_status move(branch_family *b, const double *p, ric_error *error) {
   const double value = branch_family_value(b, p[0]);
-  if (schema_check(schema_row(b->followed->key), value) != FIT_OK)
+  if (schema_check(b->followed->key, value) != FIT_OK)
     return ric_fail(error, RIC_ENUMERIC, "%s = %g is out of range", b->followed->name, value);
-  if (b->traced && schema_check(schema_row(b->traced->key), p[1]) != FIT_OK)
+  if (b->traced && schema_check(b->traced->key, p[1]) != FIT_OK)
     return ric_fail(error, RIC_ENUMERIC, "%s = %g is out of range", b->traced->name, p[1]);
-  study_values_follow(b->values, value);
+  study_values_move(b->values, KEY_BRANCH_PARAMETER, value);
   if (b->traced)
-    study_values_trace(b->values, p[1]);
+    study_values_move(b->values, KEY_BRANCH_TRACE_PARAMETER, p[1]);
   return RIC_OK;
 }
 
@@ -101,8 +103,8 @@ static size_t count_hits(const study_values *v) {
 
 int branch_family_init(branch_family *b, const study *s, study_values *v) {
   *b = (branch_family){.values = v,
-                       .followed = study_followed(s),
-                       .traced = study_traced(s)->key == KEY_COUNT ? NULL : study_traced(s),
+                       .followed = family_followed(s),
+                       .traced = family_traced(s),
                        .log = strcmp(value_word(v, KEY_BRANCH_SCALE), "log") == 0,
                        .multipliers = strcmp(value_word(v, KEY_BRANCH_MULTIPLIERS), "false") != 0,
                        .hits = calloc(count_hits(v) + 1, sizeof *b->hits),
@@ -251,7 +253,8 @@ ric_status branch_family_begin(branch_family *b, double energy, int rise, ric_er
     return ric_fail(error, RIC_EINVAL, "the branch would start at the energy %g, expected a number > 0 with scale: log",
                     energy);
   RIC_TRY(check_energy(b, energy, error));
-  study_values_begin(b->values, energy);
+  study_values_move(b->values, KEY_BRANCH_FROM, energy);
+  study_values_move(b->values, KEY_BRANCH_PARAMETER, energy);
   return make_family(b, rise, error);
 }
 

@@ -98,4 +98,7 @@ ric_status grazing_judge(grazing_task *task);
 /** Follows the grazing point in two parameters and adds the points to the tails. @returns as above */
 ric_status grazing_trace(grazing_task *task, records *tails);
 
+/** What `show` says of a result (kind.h). */
+result_card grazing_show;
+
 #endif

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "kind/family/family_task.h"
+#include "kind/family/family_check.h"
 #include "kind/machine.h"
 
 struct worker {
@@ -42,7 +43,7 @@ static int grazing_plan(const study *s, kind_plan *plan, message *why) {
   if (!v)
     return refuse(why, EXIT_RUN, "%s: no memory for the values of a task", study_name(s));
   *plan = (kind_plan){.outcome = "outcome"};
-  grazing_lay_out(v, study_followed(s)->name, study_traced(s)->key == KEY_COUNT ? NULL : study_traced(s)->name, plan);
+  grazing_lay_out(v, family_followed(s)->name, family_traced(s) ? family_traced(s)->name : NULL, plan);
   plan->memory = bytes_of(v, &plan->rows);
   const int code = machine_refuse_size(s, "a grazing motion", plan->memory, why);
   study_values_destroy(&v);
@@ -113,7 +114,29 @@ static int grazing_evaluate(worker *w, const kind_plan *plan, task_range tasks, 
   return 0;
 }
 
-const kind kind_grazing = {.name = "grazing",
+/* --- its keys --- */
+
+/* The return map beside grazing is that of motions which are solved for over a whole period. */
+static int grazing_complete(study *s, const document *d, message *why) {
+  static const char text[] = "orbit.motion = even, but kind: grazing needs forced, conservative or autonomous motions";
+  const int node = check_node_of_key(s, KEY_ORBIT_MOTION);
+  if (strcmp(study_word(s, KEY_ORBIT_MOTION), "even") != 0)
+    return family_complete(s, d, why);
+  return node ? document_refuse(d, node, why, "%s", text) : check_refuse(s, why, "%s", text);
+}
+
+extern const kind kind_grazing;
+extern const char chapter_grazing[];
+
+const kind kind_grazing = {.choice = {.name = "grazing",
+                                      .summary = "where a family first grazes an obstacle, and what follows there",
+                                      .chapter = chapter_grazing,
+                                      .groups = "pattern|start|family|trace|grazing",
+                                      .features = MODEL_SYSTEM,
+                                      .complete = grazing_complete,
+                                      .wants = family_wants,
+                                      .check = family_check},
+                           .show = grazing_show,
                            .plan = grazing_plan,
                            .open = grazing_open,
                            .evaluate = grazing_evaluate,

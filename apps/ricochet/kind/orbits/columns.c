@@ -113,6 +113,14 @@ void orbits_lay_out(const study_values *v, table *t) {
   table_lay_out(t);
 }
 
+ric_status orbits_verified(ric_status status, const ric_error *error, ric_verification *v) {
+  if (status == RIC_OK || status == RIC_ESTOPPED)
+    return status;
+  *v = (ric_verification){.result = RIC_RUN_FAILED, .closure_error = NAN};
+  snprintf(v->reason, sizeof v->reason, "%.*s", (int)sizeof v->reason - 1, error->message);
+  return RIC_OK;
+}
+
 orbits_row orbits_row_of(const ric_orbit *o, const char *reason, const ric_verification *verification) {
   return (orbits_row){.outcome = (int)o->outcome,
                       .reason = reason,

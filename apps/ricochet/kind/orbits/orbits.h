@@ -36,6 +36,10 @@ typedef struct orbits_row {
 /** Lays out the row. */
 void orbits_lay_out(const study_values *v, table *t);
 
+/** The result of a verification without an answer: `run_failed` with the error's message.
+ *  @returns RIC_OK or RIC_ESTOPPED */
+ric_status orbits_verified(ric_status status, const ric_error *error, ric_verification *verification);
+
 /** What every orbit has in its row, and what the verifier found of it; of the rest nothing. Borrows all of them. */
 orbits_row orbits_row_of(const ric_orbit *orbit, const char *reason, const ric_verification *verification);
 
@@ -47,5 +51,7 @@ int orbits_special_plan(const study *s, const study_values *v, message *why);
 /** The list, ordered by parameter; empty unless the study asks for it. */
 int orbits_special(const study *s, const kind_plan *plan, const row_source *done, ric_poll poll, extra_rows *extra,
                    message *why);
+
+extern const kind kind_orbits, kind_orbits_shooting;
 
 #endif

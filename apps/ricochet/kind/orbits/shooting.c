@@ -153,43 +153,17 @@ static ric_status solve(worker *w, double period, ric_error *error) {
 
 /* --- what else is said of it --- */
 
-/* An event-driven run from a quarter of the period on, where nothing is hit. */
-static ric_status run_events(worker *w, ric_error *error) {
-  const size_t n = w->model.lattice.particles, impacts = w->starts + w->halves;
-  const double period = w->orbit.period;
-  ric_verify_options options = ric_verify_options_default();
-  ric_promise *promises = calloc(impacts + 1, sizeof *promises);
-  double *states = calloc(10 * n, sizeof *states);
-  options.motion.poll = w->poll;
-  ric_status status = promises && states ? RIC_OK : ric_fail(error, RIC_ENOMEM, "no memory for %zu impacts", impacts);
-  for (size_t k = 0; k < impacts && status == RIC_OK; k++) {
-    const bool half = k < w->halves;
-    promises[k] = (ric_promise){half ? period / 2 : period, half ? w->hits[w->starts + k] : w->hits[k - w->halves]};
-  }
-  if (status == RIC_OK)
-    status = ric_shooting_states(w->shooting, w->z, period, 5, states, states + 5 * n, error);
-  if (status == RIC_OK)
-    status = ric_verify(w->system, period / 4, states + n, states + 6 * n, period, promises, impacts, &options,
-                        &w->verification, error);
-  free(promises);
-  free(states);
-  return status;
-}
-
 /* @returns RIC_OK or RIC_ESTOPPED */
 static ric_status verify(worker *w) {
   ric_error error = {0};
+  ric_verify_options options = ric_verify_options_default();
+  options.motion.poll = w->poll;
   w->verification = (ric_verification){.result = RIC_NOT_RUN, .closure_error = NAN};
-  if (!value_flag(w->values, KEY_ORBIT_VERIFY) ||
-      (w->orbit.outcome != RIC_ADMISSIBLE && w->orbit.outcome != RIC_GRAZING))
+  if (!value_flag(w->values, KEY_ORBIT_VERIFY) || !w->shooting)
     return RIC_OK;
-  const ric_status status = run_events(w, &error);
-  if (status == RIC_OK || status == RIC_ESTOPPED)
-    return status;
-  w->verification = (ric_verification){.result = RIC_RUN_FAILED, .closure_error = NAN};
-  snprintf(w->verification.reason, sizeof w->verification.reason, "%.*s", (int)sizeof w->verification.reason - 1,
-           error.message);
-  return RIC_OK;
+  const ric_status status =
+      ric_shooting_verify(w->shooting, w->z, w->orbit.period, &w->orbit, &options, &w->verification, &error);
+  return orbits_verified(status, &error, &w->verification);
 }
 
 /* The orbit's state and energy become those of the approximation. */
@@ -272,9 +246,7 @@ static int shooting_evaluate(worker *w, const kind_plan *plan, task_range tasks,
   return 0;
 }
 
-const kind kind_orbits_shooting = {.name = "orbits",
-                                   .methods = "shooting|ritz",
-                                   .plan = shooting_plan,
+const kind kind_orbits_shooting = {.plan = shooting_plan,
                                    .open = shooting_open,
                                    .evaluate = shooting_evaluate,
                                    .close = shooting_close,

@@ -1,11 +1,12 @@
 #include "orbits.h"
+#include "kind/pattern.h"
 
 #include <math.h>
 #include <stdbool.h>
 #include <stdint.h>
 #include <stdlib.h>
 
-#include "model/chain_model.h"
+#include "model/chain.h"
 #include "stability.h"
 
 enum { MOST_POINTS = 100000 };
@@ -147,7 +148,7 @@ static ric_status find_points(const study *s, const study_values *v, ric_poll po
   ric_orbit_options options = ric_orbit_options_default();
   ric_special_range range = range_of(s, v);
   options.poll = poll;
-  ric_status status = chain_model_init(&model, v) == 0 ? chain_model_pattern(v, &pattern, error)
+  ric_status status = chain_model_init(&model, v) == 0 ? pattern_read(v, &pattern, error)
                                                        : ric_fail(error, RIC_ENOMEM, "no memory for the floors");
   if (status == RIC_OK)
     status = ric_orbit_solver_create(&options, &solver, error);

@@ -5,9 +5,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "model/chain_model.h"
+#include "model/chain.h"
 #include "kind/kind.h"
 #include "kind/machine.h"
+#include "kind/pattern.h"
 #include "orbits.h"
 #include "stability.h"
 #include "kind/trajectory/trajectory.h"
@@ -40,7 +41,7 @@ static int plan_memory(const study *s, const study_values *v, kind_plan *plan, m
     return code;
   if (chain_model_init(&model, v) != 0)
     code = refuse(why, EXIT_RUN, "%s: no memory for the floors", study_name(s));
-  else if (chain_model_pattern(v, &pattern, &error) == RIC_OK) {
+  else if (pattern_read(v, &pattern, &error) == RIC_OK) {
     plan->memory = ric_orbit_bytes(&model.chain, pattern, method_of(v)) + 2 * (double)plan->rows.row_bytes;
     if (value_flag(v, KEY_ORBIT_VERIFY))
       plan->memory += TRAJECTORY_PARTICLE_BYTES * value_number(v, KEY_MODEL_PARTICLES, 0);
@@ -123,7 +124,7 @@ static int orbits_open(const study *s, ric_poll poll, worker **out, message *why
   if (status == RIC_OK)
     status = stability_init(&w->stability, w->values, poll, &error);
   if (status == RIC_OK && !w->pattern_varies)
-    status = chain_model_pattern(w->values, &w->pattern, &error);
+    status = pattern_read(w->values, &w->pattern, &error);
   if (status == RIC_OK)
     return 0;
   orbits_close(out);
@@ -133,7 +134,7 @@ static int orbits_open(const study *s, ric_poll poll, worker **out, message *why
 static ric_status solve(worker *w, ric_error *error) {
   if (w->pattern_varies) {
     ric_pattern_destroy(&w->pattern);
-    RIC_TRY(chain_model_pattern(w->values, &w->pattern, error));
+    RIC_TRY(pattern_read(w->values, &w->pattern, error));
   }
   return ric_orbit_solve(w->solver, &w->model.chain, w->pattern, value_number(w->values, KEY_ORBIT_PERIOD, 0),
                          &w->orbit, error);
@@ -142,16 +143,11 @@ static ric_status solve(worker *w, ric_error *error) {
 /* An event-driven run decides about an orbit that seems to be one. @returns RIC_OK or RIC_ESTOPPED */
 static ric_status verify(worker *w) {
   ric_error error = {0};
-  ric_verification *found = &w->verification;
-  *found = (ric_verification){.result = RIC_NOT_RUN, .closure_error = NAN};
-  if (!w->verifies || (w->orbit.outcome != RIC_ADMISSIBLE && w->orbit.outcome != RIC_GRAZING))
+  w->verification = (ric_verification){.result = RIC_NOT_RUN, .closure_error = NAN};
+  if (!w->verifies)
     return RIC_OK;
-  ric_status status = ric_orbit_verify(w->solver, &w->model.chain, w->pattern, &w->orbit, &w->verify, found, &error);
-  if (status == RIC_OK || status == RIC_ESTOPPED)
-    return status;
-  *found = (ric_verification){.result = RIC_RUN_FAILED, .closure_error = NAN};
-  snprintf(found->reason, sizeof found->reason, "%.*s", (int)sizeof found->reason - 1, error.message);
-  return RIC_OK;
+  return orbits_verified(ric_orbit_verify(w->solver, &w->model.chain, &w->orbit, &w->verify, &w->verification, &error),
+                         &error, &w->verification);
 }
 
 /* What the verifier says has its place where the orbit itself leaves nothing to say. */
@@ -178,8 +174,42 @@ static int orbits_evaluate(worker *w, const kind_plan *plan, task_range tasks, u
   return 0;
 }
 
-const kind kind_orbits = {.name = "orbits",
-                          .methods = "impulse|dense",
+/* --- its keys --- */
+
+static bool has_closed_form(const study *s) {
+  return schema_word_needs(KEY_ORBIT_METHOD, study_word(s, KEY_ORBIT_METHOD)) != 0;
+}
+
+static int check_special_points(const study *s, const document *d, message *why) {
+  const typed_value *flag = study_value(s, KEY_ORBIT_SPECIAL_POINTS);
+  const study_key over = s->sweep_count == 1 ? s->sweeps[0].view.key : NULL;
+  if (flag->numbers[0] == 0 || over == KEY_MODEL_GAMMA || over == KEY_ORBIT_PERIOD)
+    return 0;
+  return document_refuse(d, flag->node, why,
+                         "orbit.special_points = true lists resonances and singular points along the swept parameter: "
+                         "it requires exactly one sweep entry, over model.gamma or orbit.period");
+}
+
+static int orbits_check(const study *s, const document *d, message *why) {
+  int code = pattern_check_model(s, d, has_closed_form(s), "kind: orbits", why);
+  if (!code)
+    code = pattern_check(s, d, false, why);
+  return code ? code : check_special_points(s, d, why);
+}
+
+static const kind *by_method(const study *s) {
+  return has_closed_form(s) ? &kind_orbits : &kind_orbits_shooting;
+}
+
+extern const char chapter_orbits[];
+
+const kind kind_orbits = {.choice = {.name = "orbits",
+                                     .summary = "the periodic orbit of one impact pattern at every grid point",
+                                     .chapter = chapter_orbits,
+                                     .groups = "pattern|orbits",
+                                     .features = MODEL_SYSTEM,
+                                     .check = orbits_check},
+                          .variant = by_method,
                           .plan = orbits_plan,
                           .open = orbits_open,
                           .evaluate = orbits_evaluate,

@@ -6,9 +6,10 @@
 #include <string.h>
 
 #include "trajectory.h"
-#include "model/chain_model.h"
+#include "model/chain.h"
 #include "model/lattice_model.h"
 #include "kind/machine.h"
+#include "kind/pattern.h"
 #include "base/table.h"
 
 /* --- exponents and how they converged --- */
@@ -121,7 +122,7 @@ static int plan_memory(const study *s, const study_values *v, kind_plan *plan, m
     return code;
   if (chain_model_init(&chain, v) != 0)
     code = refuse(why, EXIT_RUN, "%s: no memory for the floors", study_name(s));
-  else if (chain_model_pattern(v, &pattern, NULL) == RIC_OK) {
+  else if (pattern_read(v, &pattern, NULL) == RIC_OK) {
     plan->memory += ric_orbit_bytes(&chain.chain, pattern, RIC_METHOD_IMPULSE);
     code = machine_refuse_size(s, what, plan->memory, why);
   }
@@ -195,7 +196,7 @@ static ric_status start_on_orbit(worker *w, verdict *found) {
   ric_error error = {0};
   ric_pattern *pattern = NULL;
   chain_model_read(&w->chain, w->values);
-  ric_status status = chain_model_pattern(w->values, &pattern, &error);
+  ric_status status = pattern_read(w->values, &pattern, &error);
   if (status == RIC_OK)
     status = ric_orbit_solve(w->solver, &w->chain.chain, pattern, value_number(w->values, KEY_ORBIT_PERIOD, 0),
                              &w->orbit, &error);
@@ -412,7 +413,46 @@ static int trajectory_plan(const study *s, kind_plan *plan, message *why) {
   return code ? code : check_only_task(s, why);
 }
 
-const kind kind_trajectory = {.name = "trajectory",
+/* --- its keys --- */
+
+/* A start on an orbit has a period; one from a state has not. */
+static bool trajectory_wants(const study *s, const document *d, study_key key) {
+  return key != KEY_ORBIT_PERIOD || check_node_of_section(s, d, "orbit");
+}
+
+static int check_start(const study *s, const document *d, message *why) {
+  const int start = check_node_of_section(s, d, "start"), orbit = check_node_of_section(s, d, "orbit");
+  if (!start != !orbit)
+    return 0;
+  if (!start)
+    return check_refuse(s, why,
+                        "kind: trajectory has neither start nor orbit, expected exactly one of the two sections");
+  return document_refuse(d, start, why,
+                         "kind: trajectory has both start and orbit, expected exactly one of the two sections");
+}
+
+static int trajectory_check(const study *s, const document *d, message *why) {
+  const int code = check_start(s, d, why);
+  if (code || !check_node_of_section(s, d, "orbit"))
+    return code;
+  if (!model_has(s, MODEL_CHAIN))
+    return document_refuse(d, check_node_of_key(s, KEY_MODEL_TYPE), why,
+                           "model.type = %s, but a start on an orbit needs model.type = chain",
+                           study_model_choice(s)->name);
+  const int refused = pattern_check_model(s, d, true, "a start on an orbit", why);
+  return refused ? refused : pattern_check(s, d, false, why);
+}
+
+extern const kind kind_trajectory;
+extern const char chapter_trajectory[];
+
+const kind kind_trajectory = {.choice = {.name = "trajectory",
+                                         .summary = "the motion from a state, or from an orbit, at every grid point",
+                                         .chapter = chapter_trajectory,
+                                         .groups = "pattern|start|time",
+                                         .features = MODEL_SYSTEM,
+                                         .wants = trajectory_wants,
+                                         .check = trajectory_check},
                               .plan = trajectory_plan,
                               .open = trajectory_open,
                               .evaluate = trajectory_evaluate,

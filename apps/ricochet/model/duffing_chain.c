@@ -1,0 +1,26 @@
+/* model.type: duffing_chain, particles in series: a lattice without on-site springs between two walls, from the second
+ * of which it is loose. */
+#include "lattice_model.h"
+
+static void read_springs(lattice_model *m, const study_values *v) {
+  (void)v;
+  m->lattice.ends = RIC_ENDS_FIXED;
+  m->lattice.links = m->springs;
+  m->lattice.on_site = m->lattice.link = (ric_spring){0};
+}
+
+static const schema_default defaults[] = {{"model.floor", "null"}, {"orbit.method", "shooting"}, {0}};
+
+extern const char chapter_duffing_chain[];
+
+const model_type model_duffing_chain = {
+    .choice = {.name = "duffing_chain",
+               .summary = "particles in series, joined by springs, the first one to the ground",
+               .chapter = chapter_duffing_chain,
+               .groups = "lattice",
+               .features = MODEL_SYSTEM,
+               .defaults = defaults,
+               .last_keys = "model.wall",
+               .particles = lattice_particles},
+    .lists_springs = true,
+    .read_springs = read_springs};
