@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <stdbool.h>
+#include <stdlib.h>
 
 #include "ricochet/attractor.h"
 
@@ -161,4 +162,34 @@ size_t period_lowest(const double *states, size_t stride, size_t count, size_t o
     if (states[k * stride + observe] < states[lowest * stride + observe])
       lowest = k;
   return lowest;
+}
+
+/* --- two attractors ----------------------------------------------------------------------------------------------- */
+
+static int compare_values(const void *a, const void *b) {
+  const double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
+/* How far that of sorted a is which is farthest from all of sorted b. */
+static double one_sided_distance(const double *a, const double *b, size_t count) {
+  double most = 0;
+  for (size_t i = 0, k = 0; i < count; i++) {
+    while (k + 1 < count && b[k + 1] <= a[i])
+      k++;
+    const double next = k + 1 < count ? fabs(b[k + 1] - a[i]) : INFINITY;
+    most = fmax(most, fmin(fabs(b[k] - a[i]), next));
+  }
+  return most;
+}
+
+double ric_attractor_distance(double *a, double *b, size_t count) {
+  if (count == 0)
+    return NAN;
+  for (size_t i = 0; i < count; i++)
+    if (!isfinite(a[i]) || !isfinite(b[i]))
+      return NAN;
+  qsort(a, count, sizeof *a, compare_values);
+  qsort(b, count, sizeof *b, compare_values);
+  return fmax(one_sided_distance(a, b, count), one_sided_distance(b, a, count)) / (b[count - 1] - b[0]);
 }

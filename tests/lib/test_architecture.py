@@ -13,12 +13,12 @@ PUBLIC = {  # public headers by room
     "flow": {"segment", "flow"},
     "impact": {"event", "trajectory", "saltation"},
     "orbit": {"pattern", "orbit", "verify", "impact_modes"},
-    "floquet": {"monodromy", "multipliers", "orbit_multipliers", "lyapunov"},
+    "floquet": {"monodromy", "multipliers", "orbit_multipliers", "lyapunov", "special_points"},
     "shooting": {"shooting", "ritz"},
     "continuation": {"continuation"},
-    "family": {"family"},
+    "family": {"explore", "family", "guess"},
     "grazing": {"bypass", "grazing", "grazing_criterion", "grazing_map"},
-    "attractor": {"attractor", "cycle_window", "motion_section", "motion_window"},
+    "attractor": {"attractor", "basin", "cycle_window", "motion_section", "motion_window", "windows"},
 }
 BASE = {"status", "export", "version"}
 UMBRELLA = "ricochet.h"

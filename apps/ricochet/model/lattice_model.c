@@ -93,68 +93,6 @@ void lattice_model_read(lattice_model *m, const study_values *v) {
   add_obstacles(m, v, KEY_MODEL_WALL, -1);
 }
 
-/* --- its linear part --- */
-
-static ric_spring scaled_spring(ric_spring spring, double factor) {
-  spring.quadratic *= factor;
-  spring.cubic *= factor;
-  return spring;
-}
-
-/* @param springs  [particles + 1] storage for those of the lattice */
-static ric_lattice scaled(const lattice_model *m, double factor, ric_spring *springs) {
-  ric_lattice lattice = m->lattice;
-  for (size_t i = 0; m->springs && i <= lattice.particles; i++)
-    springs[i] = scaled_spring(m->springs[i], factor);
-  lattice.on_site = scaled_spring(lattice.on_site, factor);
-  lattice.link = scaled_spring(lattice.link, factor);
-  lattice.on_sites = lattice.on_sites ? springs : NULL;
-  lattice.links = lattice.links ? springs : NULL;
-  return lattice;
-}
-
-static ric_status no_memory(const lattice_model *m, ric_error *error) {
-  return ric_fail(error, RIC_ENOMEM, "no memory for the springs of %zu particles", m->lattice.particles);
-}
-
-ric_status lattice_model_scaled(const lattice_model *m, double factor, ric_system **system, ric_error *error) {
-  ric_spring *springs = calloc(m->lattice.particles + 1, sizeof *springs);
-  ric_obstacle *obstacles = calloc(m->obstacle_count + 1, sizeof *obstacles);
-  ric_status status = springs && obstacles ? RIC_OK : no_memory(m, error);
-  for (size_t j = 0; j < m->obstacle_count && status == RIC_OK; j++) {
-    obstacles[j] = m->obstacles[j];
-    obstacles[j].stiffness = INFINITY;
-  }
-  if (status == RIC_OK) {
-    const ric_lattice lattice = scaled(m, factor, springs);
-    status = ric_system_create_lattice(&lattice, obstacles, m->obstacle_count, system, error);
-  }
-  free(springs);
-  free(obstacles);
-  return status;
-}
-
-ric_status lattice_model_rescale(const lattice_model *m, double factor, ric_system *system, ric_error *error) {
-  ric_spring *springs = calloc(m->lattice.particles + 1, sizeof *springs);
-  if (!springs)
-    return no_memory(m, error);
-  const ric_lattice lattice = scaled(m, factor, springs);
-  const ric_status status = ric_system_set_lattice(system, &lattice, error);
-  free(springs);
-  return status;
-}
-
-static bool is_linear(const ric_spring *spring) {
-  return spring->quadratic == 0 && spring->cubic == 0;
-}
-
-bool lattice_model_is_linear(const lattice_model *m) {
-  for (size_t i = 0; m->springs && i <= m->lattice.particles; i++)
-    if (!is_linear(&m->springs[i]))
-      return false;
-  return is_linear(&m->lattice.on_site) && is_linear(&m->lattice.link);
-}
-
 size_t lattice_model_obstacle(const lattice_model *m, size_t particle, int side) {
   for (size_t j = 0; j < m->obstacle_count; j++)
     if (m->obstacles[j].coordinate == particle && m->obstacles[j].side == side)

@@ -28,16 +28,6 @@ void lattice_model_clear(lattice_model *m);
 /** Reads the lattice of the present task. */
 void lattice_model_read(lattice_model *m, const study_values *v);
 
-/** A system of the lattice with its nonlinear terms times a factor, 0 for the linear part, and all obstacles rigid; the
- *  caller destroys it.
- *  @returns as ric_system_create_lattice. */
-ric_status lattice_model_scaled(const lattice_model *m, double factor, ric_system **system, ric_error *error);
-/** Puts such a lattice into a system made by it. @returns as ric_system_set_lattice */
-ric_status lattice_model_rescale(const lattice_model *m, double factor, ric_system *system, ric_error *error);
-
-/** Whether no spring has nonlinear terms. */
-bool lattice_model_is_linear(const lattice_model *m);
-
 /** Index of the obstacle of a particle, side +1 floor, -1 wall; SIZE_MAX when it has none. */
 size_t lattice_model_obstacle(const lattice_model *m, size_t particle, int side);
 

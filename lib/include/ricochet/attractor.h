@@ -79,6 +79,12 @@ typedef struct ric_attractor {
   char reason[128]; /* "" when periodic or aperiodic */
 } ric_attractor;
 
+/** Distance of two attractors by as many observed values of each: the Hausdorff distance of the two sets, over the
+ *  extent of the second. It is how far the value is off that is farthest from all of the other set.
+ *  @param a, b  [count] values; sorted here
+ *  @returns NaN where a value is not finite; where b has no extent NaN or infinity */
+RIC_API double ric_attractor_distance(double *a, double *b, size_t count);
+
 /* --- of maps ------------------------------------------------------------------------------------------------------ */
 
 /* Many maps side by side in SIMD lanes. Every variant applies the same operations in the same order to a value,
@@ -99,12 +105,16 @@ typedef enum ric_map_lanes {
 
 /** Name of a variant, "four". Never NULL. */
 RIC_API const char *ric_map_lanes_name(ric_map_lanes lanes);
-/** Whether this processor supports the variant; RIC_MAP_LANES_ONE is always available. Callers measure which is
- *  fastest: the library has no clock.
- */
+/** Whether this processor supports the variant; RIC_MAP_LANES_ONE is always available. */
 RIC_API bool ric_map_lanes_available(ric_map_lanes lanes);
 /** The widest available variant. */
 RIC_API ric_map_lanes ric_map_lanes_widest(void);
+/** The one that is fastest on this processor for maps of a size: wider is not always faster. Each is run a few times on
+ * a trial map, a few milliseconds in all.
+ *  @param exponents  Lyapunov exponents that are wanted, at most the size
+ *  @param now  the caller's clock, in seconds from any time; NULL: the widest, untried
+ *  @returns the narrowest where there is no memory for a trial */
+RIC_API ric_map_lanes ric_map_lanes_fastest(size_t size, size_t exponents, double (*now)(void *user), void *user);
 
 typedef struct ric_map_runner ric_map_runner;
 

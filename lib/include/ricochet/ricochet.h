@@ -8,16 +8,19 @@
 #define RICOCHET_H
 
 #include "attractor.h"
+#include "basin.h"
 #include "bypass.h"
 #include "chain.h"
 #include "continuation.h"
 #include "cycle_window.h"
 #include "event.h"
+#include "explore.h"
 #include "family.h"
 #include "flow.h"
 #include "grazing.h"
 #include "grazing_criterion.h"
 #include "grazing_map.h"
+#include "guess.h"
 #include "impact_modes.h"
 #include "lattice.h"
 #include "lyapunov.h"
@@ -37,11 +40,13 @@
 #include "saltation.h"
 #include "segment.h"
 #include "shooting.h"
+#include "special_points.h"
 #include "status.h"
 #include "system.h"
 #include "trajectory.h"
 #include "user_system.h"
 #include "verify.h"
+#include "windows.h"
 #include "ricochet/version.h"
 
 #endif

@@ -17,16 +17,6 @@ enum {
   BRANCH_TAILS_WITH_CURVES
 };
 
-/** Where a segment comes from; beyond the start, a special point of an earlier one. */
-typedef enum branch_origin {
-  BRANCH_FROM_START,
-  BRANCH_FROM_GRAZING,
-  BRANCH_FROM_IMPACT_LOST,
-  BRANCH_FROM_BRANCH_POINT,
-  BRANCH_FROM_PERIOD_DOUBLING,
-  BRANCH_ORIGINS
-} branch_origin;
-
 /** A row: how the first segment ended, and what all of them took. */
 typedef struct branch_row {
   int outcome;

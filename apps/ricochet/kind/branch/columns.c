@@ -6,8 +6,11 @@
 #include "kind/family/curve_trace.h"
 #include "kind/orbits/orbits.h"
 
-static const char *const origin_names[BRANCH_ORIGINS] = {"start", "grazing", "impact_lost", "branch_point",
-                                                         "period_doubling"};
+static const char *const origin_names[RIC_EXPLORE_ORIGINS] = {
+#define X(name, text) text,
+    RIC_EXPLORE_ORIGIN_LIST(X)
+#undef X
+};
 
 static const char *const special_names[RIC_FAMILY_KINDS] = {
 #define X(name, text) text,

@@ -1,11 +1,13 @@
-/* kind: branch. A family of periodic motions along one parameter, at every grid point of the others. */
+/* kind: branch. A family of periodic motions along one parameter, at every grid point of the others; where the study
+ * asks for it, the families that begin at its special points, and curves of these in two parameters. */
 #include "branch.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "walk.h"
+#include "kind/family/curve_trace.h"
 #include "kind/family/family_task.h"
 #include "kind/family/family_check.h"
 #include "kind/machine.h"
@@ -13,6 +15,19 @@
 struct worker {
   family_task task;
 };
+
+/* The rows of a task. */
+typedef struct branch_rows {
+  branch_family *b;
+  const kind_plan *plan;
+  records *tails; /* [plan->tail_count], behind the records of earlier tasks */
+  bool states;    /* with the impacts of every point */
+  int outcome;    /* of the first segment: ric_curve_end and beyond */
+  char reason[CURVE_REASON_BYTES];
+  size_t points, specials, segments; /* of the task */
+  unsigned long long iterations, jacobians;
+  ric_status status; /* RIC_OK, RIC_ENOMEM when records do not fit, RIC_ESTOPPED */
+} branch_rows;
 
 /* --- before the tasks --- */
 
@@ -59,56 +74,284 @@ static int branch_plan(const study *s, kind_plan *plan, message *why) {
   return code ? code : family_task_check(s, why);
 }
 
-/* --- a task --- */
+/* --- points --- */
 
-/* A branch that does not begin is a row with its reason. */
-static ric_status note_unborn(const kind_plan *plan, records *tails, ric_status status, const ric_error *error,
-                              int outcome, branch_result *result) {
+static void keep_reason(char *to, const char *reason) {
+  snprintf(to, CURVE_REASON_BYTES, "%.*s", CURVE_REASON_BYTES - 1, reason);
+}
+
+/* A new record of a tail; NULL, and the task ends, when there is no memory. */
+static unsigned char *add_record(branch_rows *w, size_t which) {
+  unsigned char *record = records_add(&w->tails[which]);
+  if (!record)
+    w->status = RIC_ENOMEM;
+  return record;
+}
+
+/* The impacts of a motion; with its first state they say all of it. @param at, special  -1: not that */
+static void add_impacts(branch_rows *w, const ric_orbit *o, long long at, long long special) {
+  for (size_t k = 0; k < o->impacts; k++) {
+    unsigned char *record = add_record(w, BRANCH_IMPACTS);
+    if (!record)
+      return;
+    const ric_obstacle *hit = &w->b->model.obstacles[o->impact_obstacle[k]];
+    row_store(&w->plan->tails[BRANCH_IMPACTS].records, record,
+              &(branch_impact){.point = at,
+                               .special = special,
+                               .time = o->impact_time[k],
+                               .particle = (long long)hit->coordinate,
+                               .side = hit->side > 0 ? 0 : 1,
+                               .gap_rate = o->gap_rate[k],
+                               .impulse = o->impulse[k]});
+  }
+}
+
+/* Largest displacement; NaN, and the task may end, when the motion cannot be run once more. */
+static double amplitude(branch_rows *w, ric_family *family, const ric_family_point *point) {
+  double most = NAN;
+  const ric_status status = ric_shooting_amplitude(ric_family_shooting(family), point->z, point->given, &most, NULL);
+  if (status == RIC_ESTOPPED || status == RIC_ENOMEM)
+    w->status = status;
+  return status == RIC_OK ? most : NAN;
+}
+
+/* States over the period, in their places in the record; NaN where the motion cannot be run once more. */
+static void fill_history(branch_rows *w, ric_family *family, const ric_family_point *point, const branch_point *to) {
+  if (!to->history_q || !to->history_v)
+    return;
+  const size_t samples = (size_t)value_number(w->b->values, KEY_BRANCH_SAMPLES, 0);
+  const ric_status status = ric_shooting_states(ric_family_shooting(family), point->z, point->given, samples,
+                                                to->history_q, to->history_v, NULL);
+  if (status == RIC_ESTOPPED || status == RIC_ENOMEM)
+    w->status = status;
+}
+
+/* All of them, in their places in the record; NaN where they are not known. */
+static void fill_multipliers(const branch_rows *w, const ric_multipliers *found, ric_complex *to) {
+  for (size_t i = 0; to && i < 2 * w->b->model.lattice.particles; i++)
+    to[i] = found && i < found->count ? found->mu[i] : (ric_complex){NAN, NAN};
+}
+
+static void add_point(branch_rows *w, const ric_explore_segment *segment, const ric_family_point *point) {
+  const table *t = &w->plan->tails[BRANCH_POINTS].records;
+  const ric_orbit *o = point->orbit;
+  const ric_multipliers *m = point->multipliers;
+  branch_point found = {0};
+  unsigned char *record = add_record(w, BRANCH_POINTS);
+  if (!record)
+    return;
+  row_load(t, record, &found);
+  found.segment = (long long)segment->index;
+  found.parameter = branch_family_value(w->b, point->parameter);
+  found.outcome = (int)o->outcome;
+  found.energy = o->energy;
+  found.period = o->period;
+  found.amplitude = amplitude(w, segment->family, point);
+  found.multiplier_max = m ? m->largest : NAN;
+  found.stable = m ? (int)m->stable : (int)RIC_STABILITY_UNKNOWN;
+  found.clearance = o->clearance;
+  found.arclength = point->arclength;
+  found.iterations = point->iterations;
+  found.residual = o->residual;
+  found.q = o->q;
+  found.v = o->v;
+  fill_multipliers(w, m, found.multipliers);
+  fill_history(w, segment->family, point, &found);
+  row_store(t, record, &found);
+  if (w->states)
+    add_impacts(w, o, (long long)w->points, -1);
+  w->points++;
+}
+
+static void add_special(branch_rows *w, const ric_explore_segment *segment, const ric_family_point *point) {
+  const ric_orbit *o = point->orbit;
+  const bool any = point->obstacle < w->b->model.obstacle_count;
+  unsigned char *record = add_record(w, BRANCH_SPECIAL);
+  if (!record)
+    return;
+  const branch_special found = {.kind = (int)point->kind,
+                                .segment = (long long)segment->index,
+                                .parameter = branch_family_value(w->b, point->parameter),
+                                .point = (long long)w->points - 1,
+                                .obstacle = any ? (long long)point->obstacle : -1,
+                                .particle = any ? (long long)w->b->model.obstacles[point->obstacle].coordinate : -1,
+                                .time = point->time,
+                                .order = point->order,
+                                .period = o->period,
+                                .energy = o->energy,
+                                .amplitude = amplitude(w, segment->family, point),
+                                .clearance = o->clearance,
+                                .multiplier_max = point->multipliers ? point->multipliers->largest : NAN,
+                                .arclength = point->arclength,
+                                .q = o->q,
+                                .v = o->v};
+  row_store(&w->plan->tails[BRANCH_SPECIAL].records, record, &found);
+  add_impacts(w, o, -1, (long long)w->specials);
+  w->specials++;
+}
+
+/* --- curves in two parameters --- */
+
+/* The special point that a curve goes through. */
+typedef struct curve_origin {
+  ric_family *family;
+  const ric_family_point *point;
+} curve_origin;
+
+/* Whether the study wants curves through special points of this kind. */
+static bool is_traced(const branch_family *b, ric_family_kind what) {
+  const char *words = KEY_BRANCH_TRACE_KINDS->words, *name = ric_family_kind_name(what);
+  const long place = schema_find_word(name, strlen(name), words);
+  for (size_t i = 0; b->traced && i < value_count(b->values, KEY_BRANCH_TRACE_KINDS); i++)
+    if (value_number(b->values, KEY_BRANCH_TRACE_KINDS, i) == (double)place)
+      return true;
+  return false;
+}
+
+static int add_curve_point(const ric_family_curve_point *point, void *user) {
+  curve_trace *t = user;
+  branch_curve_point found = {
+      .energy = point->orbit->energy, .outcome = (int)point->orbit->outcome, .iterations = point->iterations};
+  return curve_trace_add(t, point->parameter, point->second, point->orbit->period, &found.common);
+}
+
+static ric_status follow_curve(curve_trace *t, const ric_curve_options *options, void *user, ric_curve_run *run,
+                               ric_error *error) {
+  const curve_origin *from = user;
+  return ric_family_trace(from->family, from->point, options, NULL, add_curve_point, t, run, error);
+}
+
+/* The curve through the special point added last, both ways. @returns RIC_OK, RIC_ESTOPPED or RIC_ENOMEM */
+static ric_status trace_curve(branch_rows *w, ric_family *family, const ric_family_point *point) {
+  curve_origin from = {family, point};
+  curve_trace t = {.b = w->b,
+                   .layout = &w->plan->tails[BRANCH_CURVES].records,
+                   .end_layout = &w->plan->tails[BRANCH_CURVE_ENDS].records,
+                   .points = &w->tails[BRANCH_CURVES],
+                   .ends = &w->tails[BRANCH_CURVE_ENDS],
+                   .special = (long long)w->specials - 1};
+  const ric_status status = curve_trace_follow(&t, follow_curve, &from);
+  w->iterations += t.iterations;
+  w->jacobians += t.jacobians;
+  return status;
+}
+
+/* --- segments --- */
+
+/* How the first segment ends is how the task does. */
+static void add_segment(branch_rows *w, const ric_explore_segment *s, int outcome) {
+  unsigned char *record = add_record(w, BRANCH_SEGMENTS);
+  if (s->origin == RIC_EXPLORE_START) {
+    w->outcome = outcome;
+    keep_reason(w->reason, s->reason);
+  }
+  w->segments++;
+  w->iterations += s->run.iterations;
+  w->jacobians += s->run.jacobians;
+  if (!record)
+    return;
+  row_store(
+      &w->plan->tails[BRANCH_SEGMENTS].records, record,
+      &(branch_segment){.origin = (int)s->origin,
+                        .special = s->special < SIZE_MAX ? (long long)s->special : -1,
+                        .outcome = outcome,
+                        .reason = s->reason,
+                        .impacts = s->family ? (long long)ric_shooting_impacts(ric_family_shooting(s->family)) : 0,
+                        .missed = (long long)s->run.missed});
+}
+
+/* A branch that does not begin is a row with its reason.
+ * @param family  NULL where there is none  @returns RIC_OK, RIC_ESTOPPED or RIC_ENOMEM */
+static ric_status add_unborn(branch_rows *w, ric_family *family, ric_status status, const ric_error *error,
+                             int outcome) {
+  const ric_explore_segment none = {
+      .origin = RIC_EXPLORE_START, .special = SIZE_MAX, .family = family, .reason = error->message};
   if (status == RIC_ESTOPPED || status == RIC_ENOMEM)
     return status;
-  result->outcome = outcome;
-  result->segments = 1;
-  snprintf(result->reason, sizeof result->reason, "%.*s", CURVE_REASON_BYTES - 1, error->message);
-  return branch_put_unborn(plan, tails, outcome, result->reason);
+  add_segment(w, &none, outcome);
+  return w->status;
 }
 
-static ric_status follow(worker *w, const kind_plan *plan, records *tails, branch_result *result) {
+static int visit_point(const ric_explore_segment *segment, const ric_family_point *point, void *user) {
+  branch_rows *w = user;
+  if (point->kind == RIC_FAMILY_REGULAR)
+    add_point(w, segment, point);
+  else {
+    add_special(w, segment, point);
+    if (w->status == RIC_OK && is_traced(w->b, point->kind))
+      w->status = trace_curve(w, segment->family, point);
+  }
+  return w->status != RIC_OK;
+}
+
+static int visit_end(const ric_explore_segment *segment, void *user) {
+  branch_rows *w = user;
+  add_segment(w, segment, segment->status == RIC_OK ? (int)segment->run.end : CURVE_FAILED_START);
+  return w->status != RIC_OK;
+}
+
+/* --- a task --- */
+
+/* From a start at z [unknowns]. */
+static ric_status explore(branch_rows *w, const family_task *t, double *z) {
+  const study_values *v = t->values;
+  const ric_explore_visitor visitor = {.point = visit_point, .end = visit_end, .user = w};
+  ric_explore_options options = ric_explore_options_default();
   ric_error error = {0};
-  ric_status status = family_task_open(&w->task, &error);
+  double parameter;
+  int iterations = 0;
+  options.cross = value_flag(v, KEY_BRANCH_CROSS);
+  options.branches = value_flag(v, KEY_BRANCH_SWITCH);
+  options.segments = (size_t)value_number(v, KEY_BRANCH_SEGMENTS, 0);
+  ric_status status = family_task_solve(t, z, &parameter, &iterations, &error);
+  w->iterations += (unsigned long long)iterations;
   if (status != RIC_OK)
-    return note_unborn(plan, tails, status, &error, CURVE_REFUSED, result);
-  status = family_task_begin(&w->task, &error);
-  if (status != RIC_OK)
-    return note_unborn(plan, tails, status, &error, CURVE_FAILED_START, result);
-  return branch_walk(&w->task.family, &w->task.guess, plan, tails, result);
+    return add_unborn(w, t->family.family, status, &error, CURVE_FAILED_START);
+  status = ric_family_explore(t->family.family, z, parameter, &options, &visitor, &error);
+  return w->status != RIC_OK ? w->status : status;
 }
 
-static void fill_row(const branch_result *result, const table *t, unsigned char *row) {
-  row_fill(t, row,
-           &(branch_row){.outcome = result->outcome,
-                         .reason = result->reason,
-                         .points = (long long)result->points,
-                         .segments = (long long)result->segments,
-                         .iterations = (long long)result->iterations,
-                         .jacobians = (long long)result->jacobians});
+static ric_status follow(branch_rows *w, family_task *t) {
+  ric_error error = {0};
+  ric_status status = family_task_open(t, &error);
+  if (status != RIC_OK)
+    return add_unborn(w, NULL, status, &error, CURVE_REFUSED);
+  status = family_task_begin(t, &error);
+  if (status != RIC_OK)
+    return add_unborn(w, NULL, status, &error, CURVE_FAILED_START);
+  double *z = calloc(ric_shooting_unknowns(ric_family_shooting(t->family.family)), sizeof *z);
+  status = z ? explore(w, t, z) : RIC_ENOMEM;
+  free(z);
+  return status;
+}
+
+static void fill_row(const branch_rows *w, unsigned char *row) {
+  row_fill(&w->plan->rows, row,
+           &(branch_row){.outcome = w->outcome,
+                         .reason = w->reason,
+                         .points = (long long)w->points,
+                         .segments = (long long)w->segments,
+                         .iterations = (long long)w->iterations,
+                         .jacobians = (long long)w->jacobians});
 }
 
 static int branch_evaluate(worker *w, const kind_plan *plan, task_range tasks, unsigned char *row, records *tails) {
-  branch_result result = {0};
+  branch_rows found = {
+      .b = &w->task.family, .plan = plan, .tails = tails, .states = value_flag(w->task.values, KEY_BRANCH_STATES)};
   uint64_t before[BRANCH_TAILS_WITH_CURVES];
   for (size_t k = 0; k < plan->tail_count; k++)
     before[k] = tails[k].count;
   study_values_at(w->task.values, tasks.first);
-  ric_status status = follow(w, plan, tails, &result);
+  ric_status status = follow(&found, &w->task);
   branch_family_close(&w->task.family);
   if (status == RIC_ESTOPPED)
     return -1;
   if (status != RIC_OK) { /* of a branch that does not fit, nothing is kept */
     for (size_t k = 0; k < plan->tail_count; k++)
       records_cut(&tails[k], before[k]);
-    result = (branch_result){.outcome = CURVE_REFUSED, .reason = "no memory for its points"};
+    found = (branch_rows){.plan = plan, .outcome = CURVE_REFUSED, .reason = "no memory for its points"};
   }
-  fill_row(&result, &plan->rows, row);
+  fill_row(&found, row);
   return 0;
 }
 

@@ -5,13 +5,6 @@
 
 #include "diagram.h"
 
-/* Cycles of one period whose states with the smallest observed number differ by less, relative to the largest number in
- * them, are one attractor: far more than what is left of a transient, far less than what parts two of them. */
-static const double same = 1e-4;
-
-/* Beyond the first ones, attractors are not told apart: every task is compared with all of them. */
-enum { MOST_ATTRACTORS = 1000, LABEL_NONE = -1, LABEL_OTHER = -2 };
-
 #define SOURCE .source = "[FN97] section 6"
 
 typedef struct basin_label {
@@ -36,75 +29,17 @@ static const column attractor_columns[] = {
            "state of it with the smallest observed number; of the first task", SOURCE, .axes = {"coordinate"}),
 };
 
+/* The tables on their way. */
 typedef struct sorting {
   const kind_plan *plan;
   size_t size;
   table tasks, attractors;
   unsigned char *labels; /* [tasks] rows */
-  records found;
-  unsigned char *row; /* of a task */
+  unsigned char *row;    /* of a task */
+  ric_basin *basin;
 } sorting;
 
-static bool is_near(const double *a, const double *b, size_t size) {
-  double apart = 0, largest = 0;
-  for (size_t i = 0; i < size; i++) {
-    apart = fmax(apart, fabs(a[i] - b[i]));
-    largest = fmax(largest, fmax(fabs(a[i]), fabs(b[i])));
-  }
-  return apart <= same * largest;
-}
-
-static unsigned char *attractor_at(const sorting *k, uint64_t i, basin_attractor *values) {
-  unsigned char *row = k->found.bytes + i * k->attractors.row_bytes;
-  row_load(&k->attractors, row, values);
-  return row;
-}
-
-/* Index of the attractor of a task, the number of those found where it is a new one. */
-static uint64_t find(const sorting *k, const diagram_row *of) {
-  uint64_t i = 0;
-  for (; i < k->found.count; i++) {
-    basin_attractor known = {0};
-    attractor_at(k, i, &known);
-    if (known.period == of->attractor_period && (known.period == 0 || is_near(of->lowest, known.lowest, k->size)))
-      break;
-  }
-  return i;
-}
-
-/* @returns 0, or -1 without memory */
-static int add_attractor(sorting *k, uint64_t task, const diagram_row *of) {
-  unsigned char *added = records_add(&k->found);
-  if (!added)
-    return -1;
-  row_store(&k->attractors, added,
-            &(basin_attractor){.period = of->attractor_period, .first = (long long)task, .lowest = of->lowest});
-  return 0;
-}
-
-/* @returns 0, or -1 without memory */
-static int sort_task(sorting *k, uint64_t task) {
-  unsigned char *label = k->labels + task * k->tasks.row_bytes;
-  diagram_row of = {0};
-  row_load(&k->plan->rows, k->row, &of);
-  if (of.outcome != RIC_ATTRACTOR_PERIODIC && of.outcome != RIC_ATTRACTOR_APERIODIC) {
-    row_store(&k->tasks, label, &(basin_label){LABEL_NONE});
-    return 0;
-  }
-  const uint64_t i = find(k, &of);
-  row_store(&k->tasks, label, &(basin_label){i < MOST_ATTRACTORS ? (long long)i : LABEL_OTHER});
-  if (i == MOST_ATTRACTORS)
-    return 0;
-  if (i == k->found.count && add_attractor(k, task, &of) != 0)
-    return -1;
-  basin_attractor found = {0};
-  unsigned char *row = attractor_at(k, i, &found);
-  found.tasks++;
-  row_store(&k->attractors, row, &found);
-  return 0;
-}
-
-static void lay_out(sorting *k, const study *s) {
+static int lay_out(sorting *k, const study *s) {
   const table_axis axes[] = {{"coordinate", k->size}};
   k->tasks = (table){.group = "basin", .row_axis = "task"};
   table_add(&k->tasks, task_columns, sizeof task_columns / sizeof *task_columns, axes, 1);
@@ -112,13 +47,26 @@ static void lay_out(sorting *k, const study *s) {
   k->attractors = (table){.group = "basin", .row_axis = "attractor_row"};
   table_add(&k->attractors, attractor_columns, sizeof attractor_columns / sizeof *attractor_columns, axes, 1);
   table_lay_out(&k->attractors);
-  k->found.record_bytes = k->attractors.row_bytes;
   k->labels = calloc(study_tasks(s), k->tasks.row_bytes);
   k->row = calloc(1, k->plan->rows.row_bytes);
+  return k->labels && k->row && ric_basin_create(k->size, NULL, &k->basin, NULL) == RIC_OK ? 0 : -1;
+}
+
+/* @returns 0, or -1 without memory */
+static int sort_task(sorting *k, uint64_t task) {
+  diagram_row of = {0};
+  int64_t label;
+  row_load(&k->plan->rows, k->row, &of);
+  const ric_attractor run = {
+      .kind = (ric_attractor_kind)of.outcome, .period = (size_t)of.attractor_period, .lowest = of.lowest};
+  if (ric_basin_add(k->basin, &run, &label, NULL) != RIC_OK)
+    return -1;
+  row_store(&k->tasks, k->labels + task * k->tasks.row_bytes, &(basin_label){(long long)label});
+  return 0;
 }
 
 static int sort_all(sorting *k, const study *s, const row_source *done, ric_poll poll, message *why) {
-  int code = k->labels && k->row ? 0 : refuse(why, EXIT_RUN, "%s: no memory for the attractors", study_name(s));
+  int code = 0;
   for (uint64_t task = 0; task < study_tasks(s) && !code; task++) {
     if (ric_poll_stops(poll))
       return refuse(why, EXIT_STOPPED, "%s: stopped at its attractors", study_name(s));
@@ -129,18 +77,39 @@ static int sort_all(sorting *k, const study *s, const row_source *done, ric_poll
   return code;
 }
 
+/* @param found  set  @returns 0, or -1 without memory */
+static int put_attractors(const sorting *k, records *found) {
+  *found = (records){.record_bytes = k->attractors.row_bytes};
+  for (size_t i = 0; i < ric_basin_count(k->basin); i++) {
+    const ric_basin_attractor a = ric_basin_at(k->basin, i);
+    unsigned char *row = records_add(found);
+    if (!row)
+      return -1;
+    row_store(&k->attractors, row,
+              &(basin_attractor){.period = (long long)a.period,
+                                 .tasks = (long long)a.starts,
+                                 .first = (long long)a.first,
+                                 .lowest = a.lowest});
+  }
+  return 0;
+}
+
 int basin_attractors(const study *s, const kind_plan *plan, const row_source *done, ric_poll poll, extra_rows *extra,
                      message *why) {
   sorting k = {.plan = plan, .size = diagram_state_size(s)};
-  lay_out(&k, s);
-  const int code = sort_all(&k, s, done, poll, why);
+  records found = {0};
+  int code = lay_out(&k, s) == 0 ? sort_all(&k, s, done, poll, why)
+                                 : refuse(why, EXIT_RUN, "%s: no memory for the attractors", study_name(s));
+  if (!code && put_attractors(&k, &found) != 0)
+    code = refuse(why, EXIT_RUN, "%s: no memory for the attractors", study_name(s));
+  ric_basin_destroy(&k.basin);
   free(k.row);
   if (!code) {
     extra[0] = (extra_rows){.layout = k.tasks, .count = study_tasks(s), .rows = k.labels};
-    extra[1] = (extra_rows){.layout = k.attractors, .count = k.found.count, .rows = k.found.bytes};
+    extra[1] = (extra_rows){.layout = k.attractors, .count = found.count, .rows = found.bytes};
     return 0;
   }
   free(k.labels);
-  records_clear(&k.found);
+  records_clear(&found);
   return code;
 }

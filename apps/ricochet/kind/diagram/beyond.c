@@ -63,7 +63,7 @@ static ric_status find_point(beyond *b, ric_error *error) {
   double parameter, *z = calloc(ric_shooting_unknowns(ric_family_shooting(family->family)), sizeof *z);
   if (!z)
     return ric_fail(error, RIC_ENOMEM, "no memory for a motion");
-  ric_status status = branch_guess_solve(&b->task.guess, family, z, &parameter, NULL, error);
+  ric_status status = family_task_solve(&b->task, z, &parameter, NULL, error);
   if (status == RIC_OK)
     status = grazing_find(&g, z, parameter);
   if (status == RIC_OK && g.outcome != GRAZING_FOUND)

@@ -5,7 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "comparison.h"
 #include "kind/machine.h"
 
 struct worker {
@@ -86,6 +85,64 @@ static int diagram_open(const study *s, ric_poll poll, worker **out, message *wh
   return code;
 }
 
+/* --- a motion beyond grazing beside what the return map says of it ----------------------------------------------- */
+
+/* Numbers that are not known. */
+static void put_nothing(const iterated *it, diagram_row *row) {
+  row->parameter = row->d = row->map_impacts = row->map_lyapunov = row->distance = NAN;
+  for (size_t i = 0; row->map_values && i < it->options.keep; i++)
+    row->map_values[i] = NAN;
+}
+
+/* Both sets are copied: the row keeps the order in which the iterates came. */
+static ric_status put_distance(diagram_row *row, size_t keep, ric_error *error) {
+  double *both = calloc(2 * keep + 1, sizeof *both);
+  if (!both)
+    return ric_fail(error, RIC_ENOMEM, "no memory for a comparison");
+  memcpy(both, row->values, keep * sizeof *both);
+  memcpy(both + keep, row->map_values, keep * sizeof *both);
+  row->distance = ric_attractor_distance(both, both + keep, keep);
+  free(both);
+  return RIC_OK;
+}
+
+static void put_map(const iterated *it, diagram_row *row, const ric_attractor *a, double origin) {
+  row->parameter = beyond_parameter(it->beyond, it->values);
+  row->d = beyond_d(it->beyond, it->values);
+  row->map_period = (long long)a->period;
+  row->map_impacts = a->impacts;
+  row->map_lyapunov = a->exponents[0];
+  for (size_t i = 0; a->values && i < it->options.keep; i++)
+    a->values[i] += origin;
+}
+
+static ric_status run_map(iterated *it, diagram_row *row, double *z, double *x, double *exponents, ric_error *error) {
+  ric_attractor a = {.z = z, .exponents = exponents, .values = row->map_values};
+  RIC_TRY(beyond_find(it->beyond, it->values, error));
+  RIC_TRY(beyond_motion(it->beyond, it->values, beyond_parameter(it->beyond, it->values), x, error));
+  RIC_TRY(beyond_run(it->beyond, it->values, &it->options, &a, error));
+  put_map(it, row, &a, x[it->options.observe]);
+  return it->options.keep > 0 ? put_distance(row, it->options.keep, error) : RIC_OK;
+}
+
+/* Runs the map for the present task and says of the row, in which the attractor of the motion stands, what it finds.
+ * @param error  why there is no map, which the row may borrow as its reason
+ * @returns RIC_OK, also where there is no map; RIC_ESTOPPED */
+static ric_status put_comparison(iterated *it, diagram_row *row, ric_error *error) {
+  double *z = calloc(2 * it->size + it->options.exponents + 1, sizeof *z);
+  ric_status status = z ? run_map(it, row, z, z + it->size, z + 2 * it->size, error)
+                        : ric_fail(error, RIC_ENOMEM, "no memory for a comparison");
+  free(z);
+  if (status == RIC_ESTOPPED)
+    return status;
+  if (status != RIC_OK) {
+    put_nothing(it, row);
+    if (!row->reason[0]) /* the motion's own comes first */
+      row->reason = error->message;
+  }
+  return RIC_OK;
+}
+
 /* --- tasks -------------------------------------------------------------------------------------------------------- */
 
 /* Takes a task into a slot, with its own start. */
@@ -102,7 +159,7 @@ static ric_status put(worker *w, const table *rows, size_t slot, unsigned char *
   diagram_row *found = &w->rows[slot];
   diagram_put_row(found, &w->attractors[slot]);
   ric_error error = {0};
-  const ric_status status = w->it.beyond ? comparison_put(&w->it, found, &error) : RIC_OK;
+  const ric_status status = w->it.beyond ? put_comparison(&w->it, found, &error) : RIC_OK;
   row_store(rows, row, found);
   return status;
 }

@@ -3,14 +3,14 @@
 #ifndef RICOCHET_APP_FAMILY_TASK_H
 #define RICOCHET_APP_FAMILY_TASK_H
 
-#include "branch_guess.h"
+#include "branch_family.h"
 
 typedef struct family_task {
   study_values *values;
   ric_poll poll;
   branch_family family;
-  branch_guess guess;
-  bool from_state;
+  ric_guess guess; /* first guess of the present task */
+  bool from_state; /* the study gives a state to start from */
 } family_task;
 
 /** @param task  family_task_clear also after a refusal  @returns 0, or EXIT_RUN without memory */
@@ -20,9 +20,15 @@ void family_task_clear(family_task *task);
 /** Opens the family of the present values.
  *  @returns as branch_family_open: what the library refuses */
 ric_status family_task_open(family_task *task, ric_error *error);
-/** Finds the first guess, and where the study does not say where its family starts, the energy at which it does.
- *  @returns as branch_guess_find, branch_guess_settle and branch_family_begin */
+/** Finds the first guess (guess.h), and where the study does not say where its family starts, the energy at which it
+ *  does. The guess is the state of the section `start`, or of orbit.excited, orbit.mode, orbit.at_start and at_half;
+ *  else rest.
+ *  @returns as the functions of guess.h and branch_family_begin */
 ric_status family_task_begin(family_task *task, ric_error *error);
+/** Solves the equations of the family for the motion at its start.
+ *  @param z  [unknowns], set  @param parameter  the family's own at the start, set  @param iterations  may be NULL
+ *  @returns as ric_family_start */
+ric_status family_task_solve(const family_task *task, double *z, double *parameter, int *iterations, ric_error *error);
 
 /** A study of one task says at once what would be its only row: that the library refuses it. @returns 0 or EXIT_USAGE
  */

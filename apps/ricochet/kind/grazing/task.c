@@ -53,10 +53,10 @@ static int grazing_plan(const study *s, kind_plan *plan, message *why) {
 /* --- a task ------------------------------------------------------------------------------------------------------- */
 
 /* From the start of an open family. @param z  [unknowns] */
-static ric_status follow(grazing_task *g, const branch_guess *guess, double *z, records *tails) {
+static ric_status follow(const family_task *t, grazing_task *g, double *z, records *tails) {
   double parameter;
   ric_error error = {0};
-  ric_status status = branch_guess_solve(guess, g->b, z, &parameter, NULL, &error);
+  ric_status status = family_task_solve(t, z, &parameter, NULL, &error);
   if (status != RIC_OK)
     return grazing_end(g, GRAZING_FAILED_START, status, &error);
   RIC_TRY(grazing_find(g, z, parameter));
@@ -77,7 +77,7 @@ static ric_status compute(family_task *t, grazing_task *g, records *tails) {
   double *z = calloc(ric_shooting_unknowns(shooting), sizeof *z);
   status = z ? ric_grazing_init(&g->grazing, shooting, &error) : RIC_ENOMEM;
   if (status == RIC_OK)
-    status = follow(g, &t->guess, z, tails);
+    status = follow(t, g, z, tails);
   ric_grazing_clear(&g->grazing);
   free(z);
   return status;

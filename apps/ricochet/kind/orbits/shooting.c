@@ -5,9 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "kind/family/even_start.h"
 #include "kind/kind.h"
 #include "kind/machine.h"
+#include "model/lattice_model.h"
 #include "orbits.h"
 #include "stability.h"
 #include "kind/trajectory/trajectory.h"
@@ -25,7 +25,10 @@ struct worker {
   lattice_model model;
   size_t *hits; /* [impacts] obstacles of orbit.at_start, then those of at_half */
   size_t starts, halves;
-  even_start found; /* of the present task, as what follows */
+  ric_guess guess;
+  ric_system *system; /* of the present task, as what follows */
+  ric_shooting *shooting;
+  double *z; /* [particles] its unknowns */
   ric_orbit orbit;
   ric_verification verification;
   stability stability;
@@ -81,16 +84,23 @@ static int shooting_plan(const study *s, kind_plan *plan, message *why) {
   return code;
 }
 
+static void close_motion(worker *w) {
+  ric_shooting_destroy(&w->shooting);
+  ric_system_destroy(&w->system);
+}
+
 static void shooting_close(worker **out) {
   worker *w = *out;
   if (!w)
     return;
-  even_start_clear(&w->found);
+  close_motion(w);
+  ric_guess_clear(&w->guess);
   stability_clear(&w->stability);
   ric_orbit_clear(&w->orbit);
   lattice_model_clear(&w->model);
   study_values_destroy(&w->values);
   free(w->hits);
+  free(w->z);
   free(w);
   *out = NULL;
 }
@@ -107,7 +117,9 @@ static int shooting_open(const study *s, ric_poll poll, worker **out, message *w
   w->starts = value_count(w->values, KEY_ORBIT_AT_START);
   w->halves = value_count(w->values, KEY_ORBIT_AT_HALF);
   w->hits = calloc(w->starts + w->halves + 1, sizeof *w->hits);
-  ric_status status = w->hits ? RIC_OK : ric_fail(&error, RIC_ENOMEM, "no memory for %zu particles", n);
+  w->z = calloc(n, sizeof *w->z);
+  ric_status status = w->hits && w->z ? ric_guess_init(&w->guess, n, &error)
+                                      : ric_fail(&error, RIC_ENOMEM, "no memory for %zu particles", n);
   if (status == RIC_OK)
     status = ric_orbit_init(&w->orbit, n, w->starts + w->halves, &error);
   if (status == RIC_OK)
@@ -131,9 +143,12 @@ static ric_status solve(worker *w, double period, ric_error *error) {
                                        .half_count = w->halves,
                                        .flow = ric_flow_options_default(),
                                        .poll = w->poll};
-  RIC_TRY(even_start_begin(&w->found, &w->model, &motion, period, error));
-  RIC_TRY(even_start_continue(&w->found, error));
-  return ric_shooting_orbit(ric_family_shooting(w->found.family), w->found.z, period, &w->orbit, error);
+  const ric_guess_problem problem = {&w->model.lattice, w->model.obstacles, w->model.obstacle_count, &motion};
+  RIC_TRY(ric_guess_even(&problem, period, &w->guess, error));
+  RIC_TRY(ric_system_create_lattice(problem.lattice, problem.obstacles, problem.obstacle_count, &w->system, error));
+  RIC_TRY(ric_shooting_create(w->system, &motion, &w->shooting, error));
+  RIC_TRY(ric_shooting_guess(w->shooting, w->guess.q, w->guess.v, NULL, period, w->z, error));
+  return ric_shooting_orbit(w->shooting, w->z, period, &w->orbit, error);
 }
 
 /* --- what else is said of it --- */
@@ -144,27 +159,27 @@ static ric_status verify(worker *w) {
   ric_verify_options options = ric_verify_options_default();
   options.motion.poll = w->poll;
   w->verification = (ric_verification){.result = RIC_NOT_RUN, .closure_error = NAN};
-  if (!value_flag(w->values, KEY_ORBIT_VERIFY) || !w->found.family)
+  if (!value_flag(w->values, KEY_ORBIT_VERIFY) || !w->shooting)
     return RIC_OK;
-  const ric_status status = ric_shooting_verify(ric_family_shooting(w->found.family), w->found.z, w->orbit.period,
-                                                &w->orbit, &options, &w->verification, &error);
+  const ric_status status =
+      ric_shooting_verify(w->shooting, w->z, w->orbit.period, &w->orbit, &options, &w->verification, &error);
   return orbits_verified(status, &error, &w->verification);
 }
 
 /* The orbit's state and energy become those of the approximation. */
 static ric_status take_ritz(worker *w, ric_ritz *ritz, double *c, ric_error *error) {
   const double period = w->orbit.period, tolerance = value_number(w->values, KEY_ORBIT_TOLERANCE, 0);
-  ric_shooting *shooting = ric_family_shooting(w->found.family);
+  ric_shooting *shooting = w->shooting;
   const ric_status status =
-      ric_ritz_refine(ritz, shooting, w->found.z, period, tolerance > 0 ? tolerance : 0, c, &w->ritz.error, error);
+      ric_ritz_refine(ritz, shooting, w->z, period, tolerance > 0 ? tolerance : 0, c, &w->ritz.error, error);
   if (status != RIC_OK && !(status == RIC_ENUMERIC && w->ritz.error < INFINITY))
     return status;
-  RIC_TRY(ric_ritz_error(ritz, c, period, shooting, w->found.z, NULL, &w->ritz.error_v, error));
+  RIC_TRY(ric_ritz_error(ritz, c, period, shooting, w->z, NULL, &w->ritz.error_v, error));
   w->ritz.functions = ric_ritz_functions(ritz);
   w->ritz.frequency = c[ric_ritz_unknowns(ritz) - 1];
   w->ritz.defect = ric_ritz_defect(ritz, c, period);
   ric_ritz_state(ritz, c, period, 0, w->orbit.q, w->orbit.v);
-  w->orbit.energy = ric_system_energy(w->found.system, 0, w->orbit.q, w->orbit.v);
+  w->orbit.energy = ric_system_energy(w->system, 0, w->orbit.q, w->orbit.v);
   return status;
 }
 
@@ -179,7 +194,7 @@ static ric_status approximate(worker *w) {
     return RIC_OK;
   options.functions = (size_t)value_number(w->values, KEY_ORBIT_FUNCTIONS, 0);
   options.constants = value_flag(w->values, KEY_ORBIT_CONSTANTS);
-  ric_status status = ric_ritz_create(w->found.system, w->hits[0], &options, &ritz, &error);
+  ric_status status = ric_ritz_create(w->system, w->hits[0], &options, &ritz, &error);
   if (status == RIC_OK && !(c = calloc(ric_ritz_unknowns(ritz), sizeof *c)))
     status = ric_fail(&error, RIC_ENOMEM, "no memory for the coefficients");
   if (status == RIC_OK)
@@ -221,11 +236,10 @@ static int shooting_evaluate(worker *w, const kind_plan *plan, task_range tasks,
   if (status != RIC_ESTOPPED)
     status = verify(w);
   if (status != RIC_ESTOPPED)
-    status = stability_find_motion(&w->stability, w->found.family ? ric_family_shooting(w->found.family) : NULL,
-                                   w->found.z, &w->orbit);
+    status = stability_find_motion(&w->stability, w->shooting, w->z, &w->orbit);
   if (status != RIC_ESTOPPED)
     status = approximate(w);
-  even_start_clear(&w->found);
+  close_motion(w);
   if (status == RIC_ESTOPPED)
     return -1;
   fill_row(w, &plan->rows, row);

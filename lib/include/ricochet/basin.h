@@ -1,0 +1,58 @@
+/* Basins of attraction: which of many starts come to one attractor.
+ *
+ * Runs from many starts (attractor.h) come to the same few attractors. Two runs have come to one if both found the same
+ * period, and their states with the smallest observed number, `lowest`, agree: on a periodic attractor that state does
+ * not depend on the start, nor on where along the cycle a run has ended. Attractors without a period have no such
+ * state; all of them count as one. */
+#ifndef RICOCHET_BASIN_H
+#define RICOCHET_BASIN_H
+
+#include <stdint.h>
+
+#include "attractor.h"
+
+RIC_BEGIN_DECLARATIONS
+
+typedef struct ric_basin_options {
+  size_t limit;    /* most attractors that are told apart, default 1000: every run is compared with all of them */
+  double same_tol; /* 1e-4, relative to the largest number of the two states: far more than what is left of a transient,
+                      far less than what parts two cycles */
+} ric_basin_options;
+
+RIC_API ric_basin_options ric_basin_options_default(void);
+
+/** Labels of runs that have come to none of the attractors told apart. */
+enum {
+  RIC_BASIN_NONE = -1, /* diverged or failed */
+  RIC_BASIN_OTHER = -2 /* an attractor beyond the limit */
+};
+
+/** An attractor, and how many of the starts have come to it. */
+typedef struct ric_basin_attractor {
+  size_t period;        /* 0: all that have none */
+  size_t first, starts; /* the first start that has come to it, in the order in which they were added; how many have */
+  const double *lowest; /* [size] of that first one; valid until the basin is destroyed */
+} ric_basin_attractor;
+
+typedef struct ric_basin ric_basin;
+
+/** @param size  numbers of a state
+ *  @param options  copied, NULL for the defaults
+ *  @returns RIC_EINVAL for options out of range, with their value; RIC_ENOMEM */
+RIC_API ric_status ric_basin_create(size_t size, const ric_basin_options *options, ric_basin **basin, ric_error *error);
+RIC_API void ric_basin_destroy(ric_basin **basin);
+
+/** Adds the run of a start.
+ *  @param run  of which kind, period and lowest [size] count; lowest may be NULL where the run has no period
+ *  @param label  set to the index of its attractor, RIC_BASIN_NONE or RIC_BASIN_OTHER
+ *  @returns RIC_EINVAL for a periodic run without `lowest`; RIC_ENOMEM */
+RIC_API ric_status ric_basin_add(ric_basin *basin, const ric_attractor *run, int64_t *label, ric_error *error);
+
+/** Number of attractors, in the order in which they were found. */
+RIC_API size_t ric_basin_count(const ric_basin *basin);
+/** @param index  < ric_basin_count */
+RIC_API ric_basin_attractor ric_basin_at(const ric_basin *basin, size_t index);
+
+RIC_END_DECLARATIONS
+
+#endif

@@ -1,0 +1,71 @@
+/* Special points along a sweep: where the families of a pattern on a chain end, meet others or lose stability.
+ *
+ * Along the coupling gamma or the period T three kinds of parameter matter, each with a search of its own:
+ *
+ *   resonance  a mode has whole oscillations in a period (resonance.h): the contact equations blow up there
+ *   singular   the contact matrix is singular (ric_orbit_singular_points): the impulses are not unique, or infinite
+ *   critical   multipliers leave the unit circle or come back (ric_orbit_critical_points), by the kind of ric_critical
+ *
+ * Here they are one list, ordered by parameter, each with the outcome of the orbit exactly there: most resonances do
+ * nothing to a pattern that does not excite the mode, and not every zero of the determinant is driven. */
+#ifndef RICOCHET_SPECIAL_POINTS_H
+#define RICOCHET_SPECIAL_POINTS_H
+
+#include "orbit.h"
+#include "orbit_multipliers.h"
+#include "resonance.h"
+
+RIC_BEGIN_DECLARATIONS
+
+/** The critical ones in the order of ric_critical_kind. */
+#define RIC_SPECIAL_LIST(X)                                                                                            \
+  X(RIC_SPECIAL_RESONANCE, "resonance")                                                                                \
+  X(RIC_SPECIAL_SINGULAR, "singular")                                                                                  \
+  X(RIC_SPECIAL_PLUS_ONE, "plus_one")                                                                                  \
+  X(RIC_SPECIAL_MINUS_ONE, "minus_one")                                                                                \
+  X(RIC_SPECIAL_COLLISION, "collision")
+
+typedef enum ric_special_kind {
+#define X(name, text) name,
+  RIC_SPECIAL_LIST(X)
+#undef X
+      RIC_SPECIAL_KINDS
+} ric_special_kind;
+
+/** Name of a kind, "singular". Never NULL. */
+RIC_API const char *ric_special_name(ric_special_kind kind);
+
+typedef struct ric_special_point {
+  ric_special_kind kind;
+  double parameter;       /* gamma or T */
+  ric_outcome outcome;    /* of the orbit exactly there */
+  size_t mode;            /* of a resonance; SIZE_MAX */
+  unsigned harmonic;      /* oscillations of the mode in a period; 0 */
+  ric_complex multiplier; /* of a critical point, on the circle, im >= 0; NaN */
+  int change;             /* of a critical point: +1 where the number of multipliers outside grows with the parameter,
+                             -1 where it falls; 0 */
+  double uncertainty;     /* of a critical parameter; NaN */
+} ric_special_point;
+
+/** Where special points are looked for. Borrowed. */
+typedef struct ric_special_range {
+  const ric_chain *chain;
+  const ric_pattern *pattern;
+  ric_along along;  /* gamma: at the period; period: at the gamma of the chain */
+  double period;    /* along gamma */
+  double low, high; /* 0 <= low <= high */
+  size_t points;    /* of the grid on which critical parameters are looked for, >= 2; 0: none of them */
+} ric_special_range;
+
+/** Tells the special points of a range, by parameter, then kind, then mode.
+ *  @param solver  its options' method and poll count
+ *  @param point  non-zero ends it
+ *  @returns RIC_OK, also when `point` has ended it; as ric_chain_resonances, ric_orbit_singular_points,
+ *           ric_orbit_critical_points and ric_orbit_solve; RIC_ENOMEM */
+RIC_API ric_status ric_orbit_special_points(ric_orbit_solver *solver, const ric_special_range *range,
+                                            int (*point)(const ric_special_point *point, void *user), void *user,
+                                            ric_error *error);
+
+RIC_END_DECLARATIONS
+
+#endif
