@@ -78,12 +78,12 @@ typedef enum ric_grazing_search_outcome {
       RIC_GRAZING_SEARCH_OUTCOMES
 } ric_grazing_search_outcome;
 
-/** What a search along a family came to. */
+/** The result of a search along a family. */
 typedef struct ric_grazing_search {
   ric_grazing_search_outcome outcome;
   char reason[256]; /* "" when found */
   double reached;   /* parameter that the family has reached */
-  bool ended;       /* the family has come to its end, and did not graze: the run says which */
+  bool ended;       /* the family has ended without grazing: the run says how */
   ric_curve_run run;
   /* The grazing point as the family locates it, also a degenerate one; NaN and SIZE_MAX without one: */
   double parameter, period, time;
@@ -91,8 +91,7 @@ typedef struct ric_grazing_search {
 } ric_grazing_search;
 
 /** Follows a family from a solution to the first motion that grazes and passes no obstacle elsewhere. As
- *  ric_grazing_find, but that grazing points of inadmissible motions are left out, and that what the search comes to is
- *  an outcome.
+ *  ric_grazing_find, but without the grazing points of inadmissible motions, and with an outcome in place of an error.
  *  @param grazing  set when it is found; else of no use
  *  @returns RIC_OK with an outcome; RIC_EINVAL for even motions and options out of range; RIC_ESTOPPED, RIC_ENOMEM */
 RIC_API ric_status ric_grazing_search_along(ric_family *family, double *z, double parameter,
