@@ -1,4 +1,4 @@
-/* The walk along a curve. */
+/* The continuation run. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -8,14 +8,14 @@
 #include "corrector.h"
 #include "step.h"
 
-/* Special points nearer to a start along a given tangent, over the first step, are the start itself: a branch point or
- * a fold, known to rounding only. */
+/* Special points closer to a start with a given tangent, relative to the first step, are the start itself: a branch
+ * point or a fold, accurate to rounding only. */
 static const double start_itself = 1e-3;
 
-/* Steps that fail are shortened by it. Not by a half: those after it would end at the same place, a singular one. */
+/* Failed steps are shortened by this factor. Not by 1/2: the following steps would end at the same singular point. */
 static const double shorter = 0.4;
 
-/* The tangent may turn by this part of what is allowed before steps stop growing. */
+/* Steps grow as long as the tangent turns by less than this fraction of the allowed angle. */
 static const double turn_wanted = 0.7;
 
 typedef struct curve_follower {
@@ -35,7 +35,7 @@ static void end(curve_follower *w, ric_curve_end how, const char *reason) {
   snprintf(w->run->reason, sizeof w->run->reason, "%s", reason);
 }
 
-/* Shows a point to the caller. */
+/* Passes a point to the caller. */
 static void report_node(curve_follower *w, const curve_node *node, double step) {
   size_t n = w->c->problem.unknowns;
   const ric_curve_point point = {.kind = node->kind,
@@ -100,7 +100,7 @@ static ric_status begin_curve(curve_follower *w, double *u, double p, const doub
   return RIC_OK;
 }
 
-/* Steps to `to`, shorter and shorter until one succeeds. @param shortened  whether the first did not */
+/* Steps to `to`, with shorter and shorter steps until one succeeds. @param shortened  whether the first did not */
 static ric_status step_curve(curve_follower *w, bool *landed, bool *closed, bool *shortened) {
   ric_curve *c = w->c;
   *shortened = *landed = *closed = false;
@@ -117,8 +117,8 @@ static ric_status step_curve(curve_follower *w, bool *landed, bool *closed, bool
   return RIC_OK;
 }
 
-/* A quarter of the allowed corrections leaves a step as it is; two less double it, if the tangent has not turned too
- * much. Longer steps than that with more corrections each are not cheaper by the length. */
+/* With a quarter of the allowed corrections the step length is kept; with two less it doubles, unless the tangent has
+ * turned too much. Longer steps with more corrections each do not reduce the cost per length. */
 static void choose_next(curve_follower *w, bool shortened) {
   const ric_curve_options *o = &w->c->options;
   double turn = step_turn(w->c), wanted = fmax(1, o->iterations / 4.0);
@@ -129,7 +129,7 @@ static void choose_next(curve_follower *w, bool shortened) {
   w->h = fmin(o->step_most, fmax(o->step_least, factor * w->h));
 }
 
-/* Locates and shows the special points of the step. */
+/* Locates and reports the special points of the step. */
 static ric_status show_special(curve_follower *w) {
   ric_curve *c = w->c;
   size_t count;
@@ -143,7 +143,7 @@ static ric_status show_special(curve_follower *w) {
   return RIC_OK;
 }
 
-/* One step, shown; sets the end when it is the last. */
+/* One step, reported; sets the end if it is the last. */
 static ric_status advance_curve(curve_follower *w) {
   ric_curve *c = w->c;
   bool landed, closed, shortened, keep = !w->along; /* a given tangent may be a guess */
