@@ -2,7 +2,7 @@
 #include "support.h"
 
 #include "witness/impact_study.h"
-#include "witness/solved.h"
+#include "witness/solved_orbit.h"
 
 enum { MOST = 12, TRIALS = 400 };
 
@@ -198,7 +198,7 @@ static void uniform_chains_have_the_orbits_of_their_solver(void **state) {
     ric_chain chain = r.chain;
     double period = r.period;
     scenario_clear(&r);
-    solved x = solved_by(RIC_METHOD_IMPULSE, scenario_single(n, chain.ends, chain.gamma, period, hit));
+    solved_orbit x = solve_orbit(RIC_METHOD_IMPULSE, scenario_single(n, chain.ends, chain.gamma, period, hit));
     ric_system *system;
     ric_impact_modes *modes;
     ric_orbit orbit;
@@ -206,7 +206,7 @@ static void uniform_chains_have_the_orbits_of_their_solver(void **state) {
     assert_int_equal(ric_impact_modes_create(system, hit, &modes, NULL), RIC_OK);
     assert_int_equal(ric_orbit_init(&orbit, n, 1, NULL), RIC_OK);
     assert_int_equal(ric_impact_modes_orbit(modes, period, &orbit, NULL), RIC_OK);
-    double tolerance = agreement(&x) * fmax(1, orbit.condition / 10);
+    double tolerance = method_tolerance(&x) * fmax(1, orbit.condition / 10);
     assert_close(state_difference(&orbit, &x.orbit), 0, tolerance);
     assert_close(orbit.energy, x.orbit.energy, 1e-10 * orbit.energy);
     assert_int_equal(orbit.outcome, x.orbit.outcome);
@@ -215,7 +215,7 @@ static void uniform_chains_have_the_orbits_of_their_solver(void **state) {
     ric_orbit_clear(&orbit);
     ric_impact_modes_destroy(&modes);
     ric_system_destroy(&system);
-    solved_clear(&x);
+    solved_orbit_clear(&x);
   }
 }
 
