@@ -56,9 +56,10 @@ static ric_status begin_along(ric_curve *c, const double *tangent, ric_error *er
   curve_node *node = &c->from;
   double length = curve_norm(c, tangent);
   if (!(length > 0 && length < INFINITY))
-    return ric_fail(error, RIC_EINVAL, "a tangent of length %g, expected a finite one > 0", length);
+    return ric_fail(error, RIC_EINVAL, "tangent of length %g, expected a finite length > 0", length);
   if (c->options.natural && tangent[c->problem.unknowns] == 0)
-    return ric_fail(error, RIC_EINVAL, "natural steps along a tangent with t_p = 0");
+    return ric_fail(error, RIC_EINVAL,
+                    "natural steps with a tangent whose parameter component t_p = 0, expected pseudo-arclength");
   for (size_t i = 0; i < c->linear.size; i++)
     node->t[i] = tangent[i] / length;
   step_set_row(c);
@@ -73,7 +74,7 @@ static ric_status begin_at(ric_curve *c, ric_error *error) {
   curve_parameter_row(c, c->options.direction, c->row);
   ric_status status = corrector_run(c, c->row, node->x, false, &node->iterations, error);
   if (status == RIC_ENUMERIC && c->linear.singular)
-    return ric_fail(error, status, "the start at p = %.9g is singular: it needs a tangent",
+    return ric_fail(error, status, "the start at p = %.9g is singular: a tangent is required",
                     node->x[c->linear.size - 1]);
   RIC_TRY(status);
   return corrector_tangent(c, node->t, &node->det, error);

@@ -377,7 +377,7 @@ ric_status ric_curve_switch(ric_curve *curve, const double *u, double p, const d
   double *x = curve->low.x, *t = curve->low.t, length = curve_norm(curve, tangent);
   null_space k = {0};
   if (!(length > 0 && length < INFINITY))
-    return ric_fail(error, RIC_EINVAL, "a tangent of length %g, expected a finite one > 0", length);
+    return ric_fail(error, RIC_EINVAL, "tangent of length %g, expected a finite length > 0", length);
   memcpy(x, u, n * sizeof *u);
   x[n] = p;
   for (size_t i = 0; i <= n; i++)

@@ -206,7 +206,7 @@ static ric_status correct_at_bound(ric_curve *c, double bound, double most, ric_
   *p = bound;
   c->to.sigma = curve_progress(c, c->to.x);
   if (!(c->to.sigma > 0 && c->to.sigma <= most))
-    return ric_fail(error, RIC_ENUMERIC, "the end of the range, p = %.9g, is not met in the step", bound);
+    return ric_fail(error, RIC_ENUMERIC, "the bound p = %.9g is not reached in the step", bound);
   return RIC_OK;
 }
 

@@ -290,7 +290,7 @@ static ric_status count_all(secular *s, const ric_orbit_multiplier_options *o, m
     if (s->stopped)
       return ric_fail(error, RIC_ESTOPPED, "stopped at |mu| = 1 + %g", distances[stage]);
     if (!counted)
-      return ric_fail(error, RIC_ENUMERIC, "winding number along |mu| = 1 + %g is not whole", distances[stage]);
+      return ric_fail(error, RIC_ENUMERIC, "winding number along |mu| = 1 + %g is not an integer", distances[stage]);
   }
   if (all_counted(s, t) || t->outside > 0)
     return RIC_OK;
@@ -359,7 +359,7 @@ ric_status determinant_multipliers(secular *s, const ric_orbit_multiplier_option
   size_t n = s->particles, unlocated = t.on_circle + t.outside < n ? n - t.on_circle - t.outside : 0;
   locate(s, &t, m);
   if (s->stopped)
-    return ric_fail(error, RIC_ESTOPPED, "stopped on the way to the multipliers outside");
+    return ric_fail(error, RIC_ESTOPPED, "stopped before the multipliers outside the unit circle were located");
   size_t missing = t.outside > m->count ? t.outside - m->count : 0;
   multipliers_judge_outside(m, unlocated, t.near_one, &o->judge);
   if (missing > t.near_one) {

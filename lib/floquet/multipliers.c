@@ -154,7 +154,7 @@ static void evaluate_trivial(ric_multipliers *m, size_t trivial) {
     return;
   m->stable = RIC_UNDECIDED;
   snprintf(m->reason, sizeof m->reason,
-           "multiplier %.9g %+.3gi, taken for one that is 1 for any motion, lies %.3g from 1", z->re, z->im,
+           "multiplier %.9g %+.3gi, expected to be a trivial multiplier 1, lies %.3g from 1", z->re, z->im,
            distance_from_one(*z));
 }
 
@@ -195,7 +195,7 @@ void multipliers_judge_outside(ric_multipliers *m, size_t unlocated, size_t near
              near_one, o->band_at_one);
   } else if (unlocated > 0) {
     m->stable = RIC_UNDECIDED;
-    snprintf(m->reason, sizeof m->reason, "%zu multipliers are not told from the unit circle, within %.3g of it",
+    snprintf(m->reason, sizeof m->reason, "%zu multipliers within %.3g of the unit circle cannot be separated from it",
              unlocated, o->band);
   }
 }

@@ -115,7 +115,7 @@ static ric_status by_monodromy(ric_orbit_solver *solver, const ric_chain *chain,
   ric_trajectory_options options = ric_trajectory_options_default();
   ric_monodromy run;
   if (orbit->outcome == RIC_INADMISSIBLE) {
-    ric_multipliers_fail(m, "inadmissible: no event-driven run follows the orbit");
+    ric_multipliers_fail(m, "inadmissible: an event-driven run cannot follow the orbit");
     return RIC_OK;
   }
   double *M = malloc(m->dimension * m->dimension * sizeof *M);

@@ -180,9 +180,9 @@ static const char *text_of(int code) {
   switch (code) {
   case CV_ERR_FAILURE:
   case CV_CONV_FAILURE:
-    return "steps shrink to nothing: the motion blows up, or its forces jump";
+    return "steps become too short: the motion blows up, or its forces are discontinuous";
   case CV_TOO_MUCH_ACC:
-    return "the tolerance is beyond the precision of numbers";
+    return "the tolerance is below the precision of double numbers";
   default:
     return "CVODES gave up";
   }
@@ -201,7 +201,7 @@ static const char *cvodes_solver_step(cvodes_solver *s, double stop, double *t) 
       s->trouble) /* CVODES may recover from a failure with a shorter step; here a failed callback is final */
     return s->trouble ? s->trouble : text_of(code);
   if (end == s->begin)
-    return "steps shrink to nothing: the motion blows up, or its forces jump";
+    return "steps become too short: the motion blows up, or its forces are discontinuous";
   if (!(root_mean_square(cvodes_solver_state(s), s->size) < greatest_size))
     return "the motion blows up";
   s->end = end;
@@ -299,7 +299,7 @@ static ric_status cvodes_solver_carry(cvodes_solver *s, size_t columns, ric_erro
 /** Sets the tangent vectors to those at a position of the last step, 0 <= x <= 1. */
 static const char *cvodes_tangents_at(cvodes_solver *s, double x) {
   double t = x == 1 ? s->end : s->begin + x * (s->end - s->begin);
-  return CVodeGetSensDky(s->memory, t, 0, s->tangents.vector) ? "CVODES gives no tangent vectors for its step" : NULL;
+  return CVodeGetSensDky(s->memory, t, 0, s->tangents.vector) ? "CVODES has no tangent vectors for its step" : NULL;
 }
 
 /* The flow of CVODES: for every system, on the state (q, u). */
@@ -440,7 +440,7 @@ static const char *advance_solver(cvodes_flow *f, double stop) {
     return trouble;
   f->degree = cvodes_solver_polynomial(&f->solver, f->coef);
   if (f->degree < 0)
-    return "CVODES gives no polynomial for its step";
+    return "CVODES has no polynomial for its step";
   memcpy(f->coef, flow->q, n * sizeof *flow->q); /* equal up to rounding: pieces join exactly */
   memcpy(f->coef + n, flow->u, m * sizeof *flow->u);
   flow->length = f->solver.end - f->solver.begin;

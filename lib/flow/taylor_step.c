@@ -203,7 +203,7 @@ static ric_status by_decay(taylor_stepper *s, double stop, double most, ric_erro
   if (factor < 1) {
     length = taylor_step_length(remaining, best, false);
     if (taylor_step_vanishes(f->time, length))
-      return blow_up(f, "its steps shrink to nothing", error);
+      return blow_up(f, "its steps become too short", error);
     s->shorten(f, length);
   }
   return set_step(f, length, stop);

@@ -461,7 +461,7 @@ static ric_status hit(ric_bypass *b, double *gap_rate, ric_error *error) {
   *gap_rate = fmin(c.rate, 0);
   if (c.rate_end >= turn_tol * *gap_rate - turn_rounding)
     return RIC_OK;
-  return ric_fail(error, RIC_EINVAL, "obstacle %zu: an impact turns the gap rate %g into %g, expected >= 0",
+  return ric_fail(error, RIC_EINVAL, "obstacle %zu: an impact changes the gap rate %g to %g, expected >= 0",
                   b->obstacle, c.rate, c.rate_end);
 }
 
@@ -537,7 +537,7 @@ static ric_status sample(scheme *k, double depth, ric_error *error) {
   RIC_TRY(ric_bypass_map(k->b, k->t, k->state, k->image, &seen, error));
   double y = k->y[k->level] = sqrt(fmax(-seen.psi, 0));
   if (!(y > 0))
-    return ric_fail(error, RIC_ENUMERIC, "the gap is %.3g at a state %.3g behind grazing, expected less than zero",
+    return ric_fail(error, RIC_ENUMERIC, "the gap is %.3g at a state %.3g beyond grazing, expected a negative gap",
                     seen.psi, depth);
   for (size_t i = 0; i < size; i++)
     k->row[i] = ((k->image[i] - k->state[i]) / y - s * at->xi[i]) / y;

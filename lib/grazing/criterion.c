@@ -291,17 +291,17 @@ static bool spectrum_fails(const criterion_work *w, ric_grazing_criterion *c) {
     snprintf(c->reason, sizeof c->reason, "multiplier %s of modulus %.9g does not lie inside the unit circle", name,
              modulus);
   else if (modulus == 0)
-    snprintf(c->reason, sizeof c->reason, "all multipliers are zero, and so is c_i from some i on");
+    snprintf(c->reason, sizeof c->reason, "all multipliers are zero, so c_i = 0 from some i on");
   else if (!d->real)
     snprintf(c->reason, sizeof c->reason, "the dominant multiplier %s is complex", name);
   else if (!d->alone)
-    snprintf(c->reason, sizeof c->reason, "the dominant multiplier %s is not alone: another has the modulus %.9g", name,
-             c->second);
+    snprintf(c->reason, sizeof c->reason, "the dominant multiplier %s is not simple: another one has the modulus %.9g",
+             name, c->second);
   else if (d->value.re < 0)
     snprintf(c->reason, sizeof c->reason, "the dominant multiplier %s is negative", name);
   else if (!dominant_is_resolved(d))
     snprintf(c->reason, sizeof c->reason,
-             "the dominant multiplier %s is not told from others: rounding reaches %.3g of the distance", name,
+             "the dominant multiplier %s cannot be separated from others: rounding is %.3g of the distance", name,
              d->accuracy);
   else
     return false;
@@ -315,7 +315,7 @@ static bool component_fails(const criterion_work *w, ric_grazing_criterion *c) {
     return false;
   bool observed = fabs(d->observed) > d->observed_tol;
   snprintf(c->reason, sizeof c->reason, "%s the eigenvector of the dominant multiplier %.9g",
-           observed ? "xi does not excite" : "eta does not see", c->dominant.re);
+           observed ? "xi does not excite" : "eta has no component along", c->dominant.re);
   return true;
 }
 
@@ -327,7 +327,7 @@ static bool coefficients_fail(const criterion_work *w, ric_grazing_criterion *c)
     snprintf(c->reason, sizeof c->reason, "alpha = %.3g is negative, and none of the first %zu c_i", c->alpha,
              w->run.i + 1);
   else if (!w->tail.contracting)
-    snprintf(c->reason, sizeof c->reason, "what follows the dominant multiplier %.9g has no bound beyond rounding",
+    snprintf(c->reason, sizeof c->reason, "the terms beyond the dominant multiplier %.9g have no bound above rounding",
              c->dominant.re);
   else if (c->settled == SIZE_MAX || w->run.i + 1 < c->settled)
     snprintf(c->reason, sizeof c->reason,
@@ -428,7 +428,7 @@ ric_status ric_grazing_criterion_find(const ric_grazing_map *map, const ric_graz
   RIC_TRY(ric_grazing_map_check(map, error));
   RIC_TRY(check_options(&o, error));
   if (!coefficients && count > 0)
-    return ric_fail(error, RIC_EINVAL, "no room for coefficients, expected room for count = %zu", count);
+    return ric_fail(error, RIC_EINVAL, "coefficients = NULL, expected an array of count = %zu", count);
   gsl_error_handler_t *handler = gsl_set_error_handler_off();
   ric_status status = decide_criterion(&work, map, &found, error);
   if (status == RIC_OK)

@@ -80,7 +80,7 @@ static ric_status balance(balanced_map *b, ric_error *error) {
     sum += fabs(b->eta[k]) + fabs(b->xi[k]);
   }
   if (!(isfinite(sum) && isfinite(largest(b->L, n * n))))
-    return ric_fail(error, RIC_ENUMERIC, "the map has numbers too far apart to be balanced");
+    return ric_fail(error, RIC_ENUMERIC, "the numbers of the map differ too much in size to be balanced");
   b->L_exponent += normalise(b->L, n * n);
   b->c_exponent += normalise(b->eta, n) + normalise(b->xi, n);
   gsl_vector_view entries = gsl_vector_view_array(b->L, n * n);

@@ -138,8 +138,9 @@ static int on_contact(const ric_event *e, void *user) {
   if (is_grazing_contact(w->g, e))
     return 0;
   if (e->kind == RIC_EVENT_GRAZING)
-    snprintf(w->found, sizeof w->found, "two grazing points at once: obstacle %zu comes within %.3g at t = %g, too",
-             e->obstacle, e->depth, e->time);
+    snprintf(w->found, sizeof w->found,
+             "two grazing points at once: the gap of obstacle %zu has the minimum %.3g at t = %g, too", e->obstacle,
+             e->depth, e->time);
   else if (e->kind != RIC_EVENT_CONTACT && e->kind != RIC_EVENT_PARTING &&
            !(e->kind == RIC_EVENT_TRANSVERSAL && -e->gap_rate > w->slowest))
     snprintf(w->found, sizeof w->found, "an impact that is not transversal: %s, obstacle %zu, at t = %g",
@@ -287,7 +288,7 @@ static ric_status refine(minimum *k, ric_grazing *g, ric_error *error) {
     best = gap;
     g->parameter -= k->touch.gap / g->slope;
   }
-  return ric_fail(error, RIC_ENUMERIC, "the parameter at which obstacle %zu is touched does not converge near %.9g",
+  return ric_fail(error, RIC_ENUMERIC, "the grazing point of obstacle %zu does not converge near parameter %.9g",
                   k->touch.obstacle, g->parameter);
 }
 
@@ -308,8 +309,8 @@ static ric_status fill(minimum *k, ric_grazing *g, const ric_grazing_options *o,
   RIC_TRY(solve_minimum(k, g->parameter, error));
   if (!(fabs(k->touch.gap) <= nearly * k->size))
     return ric_fail(error, RIC_ENUMERIC,
-                    "the gap of obstacle %zu is %.3g at its minimum near t = %g: it is not touched", k->touch.obstacle,
-                    k->touch.gap, k->touch.time);
+                    "the gap of obstacle %zu is %.3g at its minimum near t = %g, expected 0: no grazing point",
+                    k->touch.obstacle, k->touch.gap, k->touch.time);
   RIC_TRY(degenerate_acceleration(&k->touch, k->period, k->size, o, error));
   RIC_TRY(refine(k, g, error));
   RIC_TRY(grazing_keep(k->f, &k->touch, k->period, g, error));
@@ -423,7 +424,7 @@ static ric_status find_criterion(tracer *t, const ric_family_curve_point *p, ric
   const gap_found *least = gaps->hit[obstacle] ? &gaps->own : &gaps->free;
   gap_minimum at = {.obstacle = obstacle, .time = least->time, .x = g->x, .rates = t->rates};
   if (least->obstacle != obstacle)
-    return ric_fail(error, RIC_ENUMERIC, "obstacle %zu is touched where obstacle %zu was", least->obstacle, obstacle);
+    return ric_fail(error, RIC_ENUMERIC, "obstacle %zu grazes, expected obstacle %zu", least->obstacle, obstacle);
   memcpy(g->z, p->z, g->unknowns * sizeof *g->z);
   g->parameter = p->parameter;
   g->second = p->second;

@@ -107,7 +107,7 @@ static ric_status check_map_slope(size_t obstacle, const impact_slope *found, ri
                     obstacle, found->moved, found->rate, found->power);
   if (!(found->turn >= 1 - turn_tol))
     return ric_fail(error, RIC_EINVAL,
-                    "obstacle %zu: the impact map turns small gap rates v into %.3g v, expected them not to come in",
+                    "obstacle %zu: the impact map changes small gap rates v < 0 to %.3g v, expected them >= 0",
                     obstacle, 1 - found->turn);
   return RIC_OK;
 }

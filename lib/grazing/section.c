@@ -151,7 +151,7 @@ static ric_status cross(second *w, double t, ric_error *error) {
     t += ahead;
     before = size;
   }
-  return ric_fail(error, RIC_ENUMERIC, "the section is not met near t = %g", t);
+  return ric_fail(error, RIC_ENUMERIC, "the motion does not cross the section near t = %g", t);
 }
 
 /* --- the limit --- */
@@ -196,10 +196,10 @@ static ric_status run_through_impacts(second *w, double end, double *time, ric_e
   RIC_TRY(ric_trajectory_start(w->trajectory, *time, w->x, w->x + n, error));
   RIC_TRY(ric_trajectory_run(w->trajectory, end + farthest * w->k->g->period, &observer, &run, error));
   if (run.outcome != RIC_RUN_ENDED && run.outcome != RIC_RUN_COMPLETED)
-    return ric_fail(error, RIC_ENUMERIC, "beside the grazing motion: %s at t = %g: %s",
+    return ric_fail(error, RIC_ENUMERIC, "a motion near the grazing one: %s at t = %g: %s",
                     ric_run_outcome_name(run.outcome), run.time, run.reason);
   if (w->expected > 0)
-    return ric_fail(error, RIC_ENUMERIC, "beside the grazing motion there are other impacts than its own until t = %g",
+    return ric_fail(error, RIC_ENUMERIC, "a motion near the grazing one has other impacts than it until t = %g",
                     run.time);
   memcpy(w->x, ric_trajectory_q(w->trajectory), n * sizeof *w->x);
   if (w->k->numbers > n)
@@ -230,7 +230,7 @@ static ric_status try(second *w, double depth, double *row, ric_error *error) {
     w->x[i] = k->g->x[i] - depth * w->normal[i];
   RIC_TRY(ric_bypass_map(w->bypass, k->grazing_time, w->x, w->x, &seen, error));
   if (!(seen.psi < 0))
-    return ric_fail(error, RIC_ENUMERIC, "the gap is %.3g at a state %.3g behind grazing, expected less than zero",
+    return ric_fail(error, RIC_ENUMERIC, "the gap is %.3g at a state %.3g beyond grazing, expected a negative gap",
                     seen.psi, depth);
   RIC_TRY(run_on(w, error));
   const double y = sqrt(-seen.psi);
@@ -270,7 +270,7 @@ static ric_status extrapolate(second *w, double most, double *kappa, ric_error *
   for (int order = 1; order < TRIALS; order++)
     raise_order(w, order, &change);
   if (!(change < INFINITY))
-    return ric_fail(error, RIC_ENUMERIC, "motions beside the grazing one do not come back as numbers");
+    return ric_fail(error, RIC_ENUMERIC, "motions near the grazing one overflow before they return");
   memcpy(kappa, w->best, w->k->size * sizeof *kappa);
   return RIC_OK;
 }

@@ -77,7 +77,7 @@ void impact_tangents_hold(ric_trajectory *tr, size_t obstacle) {
 ric_status ric_trajectory_carry(ric_trajectory *tr, size_t columns, const double *dq, const double *du,
                                 ric_error *error) {
   if (!tr->started)
-    return ric_fail(error, RIC_EINVAL, "the trajectory has no start");
+    return ric_fail(error, RIC_EINVAL, "the trajectory has not been started");
   RIC_TRY(ric_flow_carry(tr->flow, columns, dq, du, error));
   tr->tangents.kind = RIC_SALTATION_DIFFERENTIABLE;
   ric_status status = columns > 0 ? reserve_tangents(tr, columns, error) : RIC_OK;
@@ -197,8 +197,8 @@ ric_status impact_tangents_jump(ric_trajectory *tr, size_t hits, ric_error *erro
 
 ric_status impact_tangents_end(ric_trajectory *tr, char *reason, size_t room, ric_error *error) {
   bool grazes = tr->tangents.kind == RIC_SALTATION_GRAZING;
-  snprintf(reason, room, "at t = %g tangent vectors have no way through %s obstacle %zu", tr->tangents.time,
-           grazes ? "the grazing contact of" : "impacts at one time, one of them on", tr->tangents.obstacle);
+  snprintf(reason, room, "at t = %g tangent vectors are undefined at %s obstacle %zu", tr->tangents.time,
+           grazes ? "the grazing contact of" : "simultaneous impacts, one of them on", tr->tangents.obstacle);
   tr->tangents.kind = RIC_SALTATION_DIFFERENTIABLE;
   return ric_flow_carry(tr->flow, 0, NULL, NULL, error);
 }

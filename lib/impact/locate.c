@@ -279,7 +279,7 @@ static ric_status scan_part(scan *s, const ric_segment *piece, size_t obstacle, 
   if (gap_is_resolved(&part, before))
     return find_contact_root(s, obstacle, what, &part, found);
   if (halvings == 0)
-    return ric_fail(s->error, RIC_ELIMIT, "at t = %.10g, obstacle %zu: its %s varies too fast to be followed",
+    return ric_fail(s->error, RIC_ELIMIT, "at t = %.10g, obstacle %zu: its %s varies too fast to be resolved",
                     piece->start + from * piece->length, obstacle, what == WATCH_FORCE ? "force" : "gap");
   if (s->l->parts++ > MOST_PARTS && from > 0) { /* the step is too long: stop at what has been scanned */
     s->l->horizon = from;

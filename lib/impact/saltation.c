@@ -70,7 +70,7 @@ static const char *map(const passage *p, double t, double *q, double *u) {
   if (!p->jump->system->model->direction)
     return map_state(p, t, q);
   ric_status status = impact_reflect(p->jump->law, t, q, u, g->obstacles, g->restitution, g->count, NULL, p->error);
-  return status == RIC_OK ? NULL : "the impact law failed beside the impact";
+  return status == RIC_OK ? NULL : "the impact law failed at a state near the impact";
 }
 
 static const char *map_on_line(void *user, double x, double *value) {
@@ -330,7 +330,8 @@ static ric_status check_sequence(const sequence *s, ric_error *error) {
     if (obstacle >= s->system->obstacle_count)
       return ric_fail(error, RIC_EINVAL, "obstacle %zu, expected one of %zu", obstacle, s->system->obstacle_count);
     if (system_complies(s->system, obstacle))
-      return ric_fail(error, RIC_EINVAL, "obstacle %zu is compliant: nothing jumps there", obstacle);
+      return ric_fail(error, RIC_EINVAL, "obstacle %zu is compliant, expected a rigid one: it has no impacts",
+                      obstacle);
     double rate = ric_system_gap_rate(s->system, obstacle, s->t, s->q, s->u);
     if (!(rate < 0))
       return ric_fail(error, RIC_EINVAL, "the gap rate of obstacle %zu is %g, expected below 0", obstacle, rate);

@@ -334,7 +334,7 @@ ric_status ric_trajectory_run(ric_trajectory *tr, double end, const ric_observer
                               ric_error *error) {
   ric_error local = {0};
   if (!tr->started)
-    return ric_fail(error, RIC_EINVAL, "the trajectory has no start");
+    return ric_fail(error, RIC_EINVAL, "the trajectory has not been started");
   RIC_TRY(flow_check_revision(tr->flow, error));
   if (!(end >= tr->flow->time && end < INFINITY))
     return ric_fail(error, RIC_EINVAL, "end = %g, expected a finite time from t = %g on", end, tr->flow->time);

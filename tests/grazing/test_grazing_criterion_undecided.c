@@ -52,13 +52,13 @@ static void negative_coefficients_after_a_zero_decide(void **state) {
 static void degenerate_spectra_are_undecided(void **state) {
   (void)state;
   const double ones[] = {1, 1, 1, 1};
-  assert_undecided(diagonal_map(2, (double[]){0.5, 0.5}, ones, ones), "0.5 is not alone");
-  assert_undecided(map_of(2, (double[]){0.5, 1, 0, 0.5}, ones, ones), "0.5 is not alone");
-  assert_undecided(diagonal_map(2, (double[]){0.5, -0.5}, ones, (double[]){1, 0.1}), "0.5 is not alone");
-  assert_undecided(diagonal_map(2, (double[]){0.5, 0.5 - 1e-8}, ones, ones), "0.5 is not alone");
+  assert_undecided(diagonal_map(2, (double[]){0.5, 0.5}, ones, ones), "0.5 is not simple");
+  assert_undecided(map_of(2, (double[]){0.5, 1, 0, 0.5}, ones, ones), "0.5 is not simple");
+  assert_undecided(diagonal_map(2, (double[]){0.5, -0.5}, ones, (double[]){1, 0.1}), "0.5 is not simple");
+  assert_undecided(diagonal_map(2, (double[]){0.5, 0.5 - 1e-8}, ones, ones), "0.5 is not simple");
   assert_undecided(map_of(3, (double[]){0.2, 0, 0, 0, 0, -0.5, 0, 0.5, 0}, (double[]){1, 0, 0}, ones), "is complex");
   assert_undecided(diagonal_map(2, (double[]){0.2, -0.5}, (double[]){1, 0}, ones), "-0.5 is negative");
-  assert_undecided(diagonal_map(2, (double[]){0.5, 0.2}, (double[]){0, 1}, ones), "eta does not see");
+  assert_undecided(diagonal_map(2, (double[]){0.5, 0.2}, (double[]){0, 1}, ones), "eta has no component along");
   assert_undecided(diagonal_map(2, (double[]){0.5, 0.2}, ones, (double[]){0, 1}), "xi does not excite");
   assert_undecided(diagonal_map(2, (double[]){1.5, 0.2}, ones, ones), "multiplier 1.5 of modulus 1.5 does not lie");
   assert_undecided(diagonal_map(2, (double[]){1, 0.2}, ones, ones), "multiplier 1 of modulus 1 does not lie");
@@ -102,7 +102,7 @@ static void degenerate_maps_stay_undecided_in_any_coordinates(void **state) {
     random_coordinates(&source, trial % 2 ? 4 : 0, 4, S);
     for (size_t k = 0; k < sizeof maps / sizeof *maps; k++) {
       change_coordinates(&maps[k], S);
-      assert_undecided(maps[k], k == 3 ? "eta does not see" : k == 4 ? "xi does not excite" : "");
+      assert_undecided(maps[k], k == 3 ? "eta has no component along" : k == 4 ? "xi does not excite" : "");
     }
   }
 }

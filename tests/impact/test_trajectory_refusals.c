@@ -77,13 +77,13 @@ static void starts_are_checked(void **state) {
   ric_error error;
   ric_run run;
   double zero = 0, low = -0.25, nan = NAN;
-  expect(ric_trajectory_run(b.trajectory, 1, NULL, &run, &error), RIC_EINVAL, &error, "no start");
+  expect(ric_trajectory_run(b.trajectory, 1, NULL, &run, &error), RIC_EINVAL, &error, "has not been started");
   expect(ric_trajectory_start(b.trajectory, 0, &low, &zero, &error), RIC_EINVAL, &error,
          "the gap of obstacle 0 (a floor) is -0.25, expected >= 0");
   expect(ric_trajectory_start(b.trajectory, 0, &nan, &zero, &error), RIC_EINVAL, &error, "q[0] = nan");
   expect(ric_trajectory_start(b.trajectory, 0, &zero, &nan, &error), RIC_EINVAL, &error, "u[0] = nan");
   expect(ric_trajectory_start(b.trajectory, INFINITY, &zero, &zero, &error), RIC_EINVAL, &error, "t = inf");
-  expect(ric_trajectory_run(b.trajectory, 1, NULL, &run, &error), RIC_EINVAL, &error, "no start");
+  expect(ric_trajectory_run(b.trajectory, 1, NULL, &run, &error), RIC_EINVAL, &error, "has not been started");
   assert_int_equal(ric_trajectory_start(b.trajectory, 3, &zero, &zero, &error), RIC_OK);
   expect(ric_trajectory_run(b.trajectory, 2, NULL, &run, &error), RIC_EINVAL, &error, "end = 2");
   expect(ric_trajectory_run(b.trajectory, NAN, NULL, &run, &error), RIC_EINVAL, &error, "end = nan");
