@@ -10,13 +10,14 @@
  * itself, relative to the distance of the two points of the line. */
 static const double bracket_width = 1e-2, bracket_least = 1e-9;
 
-/* Where a line keeps its sign, edges on the cycle are looked for this many times nearer to zero and farther from it. */
+/* Where a line keeps its sign, the search for edges on the cycle goes this many times nearer to zero and farther from
+ * it. */
 static const double far_beyond = 10;
 
-/* What a run tells of a cycle. */
+/* What a run shows of a cycle. */
 typedef struct signature {
   size_t period;   /* 0: no period */
-  int64_t impacts; /* in a period; -1: too few iterates are measured to tell */
+  int64_t impacts; /* in a period; -1: too few iterates are measured to say */
 } signature;
 
 /* Consecutive points of one signature. */
@@ -43,8 +44,8 @@ static signature signature_of(const search *s, const ric_attractor *a) {
   const double of_period = a->impacts * (double)period;
   if (period == 0)
     return (signature){0};
-  const bool tells = measured % period == 0 || (double)measured > 2 * (of_period + 1) * (double)period;
-  return (signature){.period = period, .impacts = tells ? llround(of_period) : -1};
+  const bool known = measured % period == 0 || (double)measured > 2 * (of_period + 1) * (double)period;
+  return (signature){.period = period, .impacts = known ? llround(of_period) : -1};
 }
 
 /* Whether two attractors may belong to one window. */
@@ -58,7 +59,7 @@ static bool goes_on(const ric_attractor *a) {
 }
 
 /* Halves the way from a value inside to one outside until it is narrow.
- * @param earlier  the point of the two from which a line that is followed comes to the edge */
+ * @param earlier  the point of the two from which a line that is followed reaches the edge */
 static ric_status narrow_bracket(search *s, const span *w, size_t earlier, double *inside, double *outside) {
   const ric_window_line *line = s->line;
   const size_t bytes = line->size * sizeof *s->from;
@@ -100,7 +101,7 @@ static ric_status find_bracket(search *s, const span *w, ric_window *window) {
 
 /* --- on the cycle ------------------------------------------------------------------------------------------------- */
 
-/* How far edges are looked for: well beyond the line, where the parameter does not change its sign. */
+/* Bounds of the search for edges: well beyond the line, where the parameter does not change its sign. */
 static void find_bounds(const ric_window_line *line, double *low, double *high) {
   const double a = fmin(line->p[0], line->p[line->points - 1]), b = fmax(line->p[0], line->p[line->points - 1]);
   *low = a > 0 ? a / far_beyond : b < 0 ? a * far_beyond : a - (b - a);

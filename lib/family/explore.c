@@ -10,10 +10,10 @@
 
 /* A segment that waits to be followed, or was. */
 typedef struct segment {
-  ric_explore_segment told;
-  bool owned;      /* its family was made here */
-  double *z;       /* [unknowns]; NULL where there is none to begin with */
-  double *tangent; /* [unknowns + 1]; NULL: of the start */
+  ric_explore_segment view; /* what the visitor sees of it */
+  bool owned;               /* its family was made here */
+  double *z;                /* [unknowns]; NULL where there is none to begin with */
+  double *tangent;          /* [unknowns + 1]; NULL: of the start */
   double parameter;
   ric_error why; /* why it could not be begun */
 } segment;
@@ -65,10 +65,10 @@ static bool was_met(exploration *e, const ric_family_point *point) {
   return false;
 }
 
-/* A segment that begins at the special point told last. */
+/* A segment that begins at the special point reported last. */
 static segment *add_segment(exploration *e, ric_explore_origin origin, const ric_family_point *point) {
   segment *s = &e->segments[e->count];
-  *s = (segment){.told = {.index = e->count, .origin = origin, .special = e->specials - 1, .reason = ""},
+  *s = (segment){.view = {.index = e->count, .origin = origin, .special = e->specials - 1, .reason = ""},
                  .parameter = point->parameter};
   e->count++;
   return s;
@@ -76,8 +76,8 @@ static segment *add_segment(exploration *e, ric_explore_origin origin, const ric
 
 /* What led to a segment failed: it has no points; without memory, or stopped, the exploration ends. */
 static void keep_failure(exploration *e, segment *s, ric_status status) {
-  s->told.status = status;
-  s->told.reason = s->why.message;
+  s->view.status = status;
+  s->view.reason = s->why.message;
   if (status == RIC_ENOMEM || status == RIC_ESTOPPED)
     e->status = ric_fail(e->error, status, "%s", s->why.message);
 }
@@ -87,7 +87,7 @@ typedef ric_status (*way_over)(ric_family *family, const ric_family_point *point
 
 static void add_other_family(exploration *e, ric_explore_origin origin, const ric_family_point *point, way_over way) {
   ric_family_junction junction = {0};
-  ric_family *family = e->segments[e->current].told.family;
+  ric_family *family = e->segments[e->current].view.family;
   segment *s = add_segment(e, origin, point);
   const ric_status status = way(family, point, &junction, &s->why);
   if (status != RIC_OK) {
@@ -95,7 +95,7 @@ static void add_other_family(exploration *e, ric_explore_origin origin, const ri
     keep_failure(e, s, status);
     return;
   }
-  s->told.family = junction.family;
+  s->view.family = junction.family;
   s->owned = true;
   s->z = junction.z;
   s->tangent = junction.tangent;
@@ -111,9 +111,9 @@ static double *copy_scaled(const double *numbers, size_t count, double factor) {
 
 /* @param other  [unknowns + 1] tangent of the other branch  @param side  of which half */
 static void add_half(exploration *e, const ric_family_point *point, const double *other, int side) {
-  ric_family *family = e->segments[e->current].told.family;
+  ric_family *family = e->segments[e->current].view.family;
   segment *s = add_segment(e, RIC_EXPLORE_BRANCH_POINT, point);
-  s->told.family = family;
+  s->view.family = family;
   s->z = copy_scaled(point->z, point->unknowns, 1);
   s->tangent = copy_scaled(other, point->unknowns + 1, side);
   if (!s->z || !s->tangent)
@@ -122,7 +122,7 @@ static void add_half(exploration *e, const ric_family_point *point, const double
 
 /* Both halves of the branch that crosses here. */
 static void add_other_branch(exploration *e, const ric_family_point *point) {
-  ric_family *family = e->segments[e->current].told.family;
+  ric_family *family = e->segments[e->current].view.family;
   ric_error why = {0};
   double *other = calloc(point->unknowns + 1, sizeof *other);
   const ric_status status =
@@ -140,7 +140,7 @@ static void add_other_branch(exploration *e, const ric_family_point *point) {
 
 /* The families that begin at a special point. */
 static void add_families(exploration *e, const ric_family_point *point) {
-  const bool even = shooting_is_even(ric_family_shooting(e->segments[e->current].told.family));
+  const bool even = shooting_is_even(ric_family_shooting(e->segments[e->current].view.family));
   const ric_family_kind kind = point->kind;
   const bool crosses = e->options.cross && (kind == RIC_FAMILY_GRAZING || kind == RIC_FAMILY_IMPACT_LOST);
   const bool doubles = e->options.branches && kind == RIC_FAMILY_PERIOD_DOUBLING && !even;
@@ -161,7 +161,7 @@ static void add_families(exploration *e, const ric_family_point *point) {
 static int visit_point(const ric_family_point *point, void *user) {
   exploration *e = user;
   if (e->visitor.point)
-    e->over = e->visitor.point(&e->segments[e->current].told, point, e->visitor.user) != 0;
+    e->over = e->visitor.point(&e->segments[e->current].view, point, e->visitor.user) != 0;
   if (!e->over && point->kind != RIC_FAMILY_REGULAR) {
     e->specials++;
     add_families(e, point);
@@ -171,21 +171,21 @@ static int visit_point(const ric_family_point *point, void *user) {
 
 /* One segment to its end. @returns RIC_OK, RIC_ESTOPPED or RIC_ENOMEM */
 static ric_status follow_segment(exploration *e, segment *s) {
-  if (s->told.status == RIC_OK) {
-    s->told.status =
-        ric_family_follow(s->told.family, s->z, s->parameter, s->tangent, visit_point, e, &s->told.run, &s->why);
-    s->told.reason = s->told.status == RIC_OK ? s->told.run.reason : s->why.message;
+  if (s->view.status == RIC_OK) {
+    s->view.status =
+        ric_family_follow(s->view.family, s->z, s->parameter, s->tangent, visit_point, e, &s->view.run, &s->why);
+    s->view.reason = s->view.status == RIC_OK ? s->view.run.reason : s->why.message;
   }
-  if (e->status == RIC_OK && (s->told.status == RIC_ENOMEM || s->told.status == RIC_ESTOPPED))
-    e->status = ric_fail(e->error, s->told.status, "%s", s->told.reason);
+  if (e->status == RIC_OK && (s->view.status == RIC_ENOMEM || s->view.status == RIC_ESTOPPED))
+    e->status = ric_fail(e->error, s->view.status, "%s", s->view.reason);
   if (e->status == RIC_OK && !e->over && e->visitor.end)
-    e->over = e->visitor.end(&s->told, e->visitor.user) != 0;
+    e->over = e->visitor.end(&s->view, e->visitor.user) != 0;
   return e->status;
 }
 
 static ric_status explore(exploration *e, ric_family *family, const double *z, double parameter) {
   segment *first = &e->segments[e->count++];
-  *first = (segment){.told = {.origin = RIC_EXPLORE_START, .special = SIZE_MAX, .family = family, .reason = ""},
+  *first = (segment){.view = {.origin = RIC_EXPLORE_START, .special = SIZE_MAX, .family = family, .reason = ""},
                      .z = copy_scaled(z, family->unknowns, 1),
                      .parameter = parameter};
   if (!first->z)
@@ -198,7 +198,7 @@ static ric_status explore(exploration *e, ric_family *family, const double *z, d
 static void clear(exploration *e) {
   for (size_t i = 0; i < e->count; i++) {
     if (e->segments[i].owned)
-      ric_family_destroy(&e->segments[i].told.family);
+      ric_family_destroy(&e->segments[i].view.family);
     free(e->segments[i].z);
     free(e->segments[i].tangent);
   }

@@ -25,7 +25,7 @@ static const double grazing_newton_tol = 1e-11;
 /* Components of a mode, of unit length, that are smaller are rounding of zero. */
 static const double moves_tol = 1e-12;
 
-/* A step along the period that only tells which way the energy goes: near grazing it may have an extreme. */
+/* A step along the period that only shows which way the energy goes: near grazing it may have an extreme. */
 static const double side_step = 1e-4;
 
 ric_status ric_guess_init(ric_guess *guess, size_t particles, ric_error *error) {

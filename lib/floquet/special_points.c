@@ -141,8 +141,8 @@ static ric_status find_all(special_list *s, ric_error *error) {
 }
 
 /* With the outcome of the orbit exactly there. */
-static ric_status tell_all(special_list *s, int (*point)(const ric_special_point *point, void *user), void *user,
-                           ric_error *error) {
+static ric_status report_all(special_list *s, int (*point)(const ric_special_point *point, void *user), void *user,
+                             ric_error *error) {
   const ric_special_range *r = s->range;
   const bool along_gamma = r->along == RIC_ALONG_GAMMA;
   ric_orbit orbit = {0};
@@ -167,7 +167,7 @@ ric_status ric_orbit_special_points(ric_orbit_solver *solver, const ric_special_
   special_list list = {.solver = solver, .range = range};
   ric_status status = find_all(&list, error);
   if (status == RIC_OK)
-    status = tell_all(&list, point, user, error);
+    status = report_all(&list, point, user, error);
   free(list.points);
   return status;
 }

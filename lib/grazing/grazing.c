@@ -368,36 +368,76 @@ ric_status ric_grazing_take(ric_family *f, const double *z, double parameter, si
 
 /* --- along a family ----------------------------------------------------------------------------------------------- */
 
-typedef struct walk {
+/* A search along a family, with the first grazing point. */
+typedef struct grazing_run {
   ric_grazing *g;
-  gap_minimum at;
-  double parameter, reached;
-  bool found;
-} walk;
+  ric_grazing_search *search;
+  bool admissible; /* leave out motions that pass an obstacle elsewhere */
+  bool began, found;
+} grazing_run;
 
-static int on_point(const ric_family_point *point, void *user) {
-  walk *w = user;
-  w->reached = point->parameter;
-  if (point->kind != RIC_FAMILY_GRAZING)
+static int stop_at_grazing(const ric_family_point *point, void *user) {
+  grazing_run *r = user;
+  ric_grazing_search *s = r->search;
+  r->began = true;
+  s->reached = point->parameter;
+  if (point->kind != RIC_FAMILY_GRAZING || (r->admissible && point->orbit->outcome == RIC_INADMISSIBLE))
     return 0;
-  w->found = true;
-  w->parameter = point->parameter;
-  w->at = (gap_minimum){.obstacle = point->obstacle, .time = point->time};
-  memcpy(w->g->z, point->z, w->g->unknowns * sizeof *point->z);
+  r->found = true;
+  s->parameter = point->parameter;
+  s->period = point->orbit->period;
+  s->time = point->time;
+  s->obstacle = point->obstacle;
+  memcpy(r->g->z, point->z, r->g->unknowns * sizeof *point->z);
   return 1;
+}
+
+/* @returns RIC_OK where it is found; else why not, and the outcome says what that is */
+static ric_status search_along(ric_family *f, double *z, double parameter, const ric_grazing_options *o, grazing_run *r,
+                               ric_error *error) {
+  ric_grazing_search *s = r->search;
+  *s = (ric_grazing_search){.reached = parameter, .parameter = NAN, .period = NAN, .time = NAN, .obstacle = SIZE_MAX};
+  ric_status status = ric_family_follow(f, z, parameter, NULL, stop_at_grazing, r, &s->run, error);
+  if (status != RIC_OK) {
+    s->outcome = r->began ? RIC_GRAZING_SEARCH_FAILED : RIC_GRAZING_SEARCH_FAILED_START;
+    return status;
+  }
+  if (!r->found) {
+    const ric_curve_end end = s->run.end;
+    const bool whole = end == RIC_CURVE_BOUND || end == RIC_CURVE_POINTS || end == RIC_CURVE_CLOSED;
+    s->ended = true;
+    s->outcome = whole ? RIC_GRAZING_SEARCH_NONE : RIC_GRAZING_SEARCH_FAILED;
+    return ric_fail(error, RIC_ENUMERIC, "no obstacle is touched from %.9g to %.9g, where the family ends: %s%s%.100s",
+                    parameter, s->reached, ric_curve_end_name(end), s->run.reason[0] ? ": " : "", s->run.reason);
+  }
+  status = fill_grazing(f, s->parameter, &(gap_minimum){.obstacle = s->obstacle, .time = s->time}, o, r->g, error);
+  s->outcome = status == RIC_OK         ? RIC_GRAZING_SEARCH_FOUND
+               : status == RIC_ENUMERIC ? RIC_GRAZING_SEARCH_DEGENERATE
+                                        : RIC_GRAZING_SEARCH_FAILED;
+  return status;
 }
 
 ric_status ric_grazing_find(ric_family *f, double *z, double parameter, const ric_grazing_options *options,
                             ric_grazing *g, ric_error *error) {
   const ric_grazing_options o = options ? *options : ric_grazing_options_default();
-  walk w = {.g = g, .reached = parameter};
-  ric_curve_run run;
+  ric_grazing_search search;
+  grazing_run r = {.g = g, .search = &search};
   RIC_TRY(check_start(f, g, &o, error));
-  RIC_TRY(ric_family_follow(f, z, parameter, NULL, on_point, &w, &run, error));
-  if (w.found)
-    return fill_grazing(f, w.parameter, &w.at, &o, g, error);
-  return ric_fail(error, RIC_ENUMERIC, "no obstacle is touched from %.9g to %.9g, where the family ends: %s%s%.100s",
-                  parameter, w.reached, ric_curve_end_name(run.end), run.reason[0] ? ": " : "", run.reason);
+  return search_along(f, z, parameter, &o, &r, error);
+}
+
+ric_status ric_grazing_search_along(ric_family *f, double *z, double parameter, const ric_grazing_options *options,
+                                    ric_grazing_search *search, ric_grazing *g, ric_error *error) {
+  const ric_grazing_options o = options ? *options : ric_grazing_options_default();
+  grazing_run r = {.g = g, .search = search, .admissible = true};
+  ric_error why = {0};
+  RIC_TRY(check_start(f, g, &o, error));
+  const ric_status status = search_along(f, z, parameter, &o, &r, &why);
+  if (status == RIC_ESTOPPED || status == RIC_ENOMEM)
+    return ric_fail(error, status, "%s", why.message);
+  if (status != RIC_OK)
+    snprintf(search->reason, sizeof search->reason, "%s", why.message);
+  return RIC_OK;
 }
 
 /* Curves of grazing in two parameters, with the criterion along them. */

@@ -166,7 +166,7 @@ static void even_guesses_of_nonlinear_lattices_are_motions(void **state) {
   ric_verification verification;
   ric_system *system = NULL;
   ric_error error;
-  double q[5 * RING], v[5 * RING];
+  ric_orbit orbit;
   put_floors(floors, RING);
   check(ric_guess_even(&problem, ring_period, &guess, &error), &error);
   check(ric_system_create_lattice(&lattice, floors, RING, &system, &error), &error);
@@ -182,6 +182,7 @@ static void even_guesses_of_nonlinear_lattices_are_motions(void **state) {
   ric_orbit_clear(&expected);
   if (verification.result != RIC_VERIFIED)
     fail_msg("%s", verification.reason);
+  ric_orbit_clear(&orbit);
   ric_guess_clear(&guess);
   shooting_solution_clear(&s);
 }

@@ -191,12 +191,135 @@ static void even_motions_are_refused(void **state) {
   ric_system_destroy(&system);
 }
 
+/* --- a search, whose outcomes are no errors ----------------------------------------------------------------------- */
+
+static ric_grazing_search search(sought *k) {
+  ric_grazing_search found;
+  ric_error error;
+  if (ric_grazing_search_along(k->at.family, k->at.z, k->at.from, NULL, &found, &k->at.grazing, &error) != RIC_OK)
+    fail_msg("%s", error.message);
+  assert_true((found.outcome == RIC_GRAZING_SEARCH_FOUND) == (found.reason[0] == '\0'));
+  return found;
+}
+
+/* The same search by both functions, to the bit. */
+static void a_search_finds_what_is_found(void **state) {
+  (void)state;
+  shaped s = {1, straight};
+  force_now = 0.5;
+  sought by_find = seek(&s, 1, 0.5, 2, set_force);
+  assert_int_equal(ric_grazing_find(by_find.at.family, by_find.at.z, 0.5, NULL, &by_find.at.grazing, NULL), RIC_OK);
+  force_now = 0.5;
+  sought by_search = seek(&s, 1, 0.5, 2, set_force);
+  const ric_grazing_search found = search(&by_search);
+  assert_int_equal(found.outcome, RIC_GRAZING_SEARCH_FOUND);
+  assert_true(by_find.at.grazing.parameter == by_search.at.grazing.parameter);
+  assert_true(by_find.at.grazing.time == by_search.at.grazing.time);
+  assert_int_equal(found.obstacle, 0);
+  assert_close(found.parameter, 1, 1e-9);
+  assert_close(found.time, two_pi / 4, 1e-8);
+  assert_close(found.period, two_pi, 1e-14);
+  assert_true(!found.ended);
+  sought_clear(&by_find);
+  sought_clear(&by_search);
+}
+
+static void a_search_to_the_end_of_a_family_finds_none(void **state) {
+  (void)state;
+  shaped s = {1, straight};
+  force_now = 0.5;
+  sought k = seek(&s, 1, 0.5, 0.9, set_force);
+  const ric_grazing_search found = search(&k);
+  assert_int_equal(found.outcome, RIC_GRAZING_SEARCH_NONE);
+  assert_true(found.ended && found.run.end == RIC_CURVE_BOUND && found.reached == 0.9);
+  assert_true(found.obstacle == SIZE_MAX && isnan(found.parameter));
+  sought_clear(&k);
+}
+
+static void a_search_tells_where_a_grazing_point_is_degenerate(void **state) {
+  (void)state;
+  shaped s = {0.5, flat};
+  force_now = 1;
+  sought k = seek(&s, 1, 0.5, -1, set_wall);
+  const ric_grazing_search found = search(&k);
+  assert_int_equal(found.outcome, RIC_GRAZING_SEARCH_DEGENERATE);
+  assert_non_null(strstr(found.reason, "A_g near zero"));
+  assert_int_equal(found.obstacle, 0);
+  assert_close(found.parameter, 0, 1e-6);
+  sought_clear(&k);
+}
+
+/* Two coupled particles before walls, the first of which hits its own once in a period. */
+typedef struct coupled {
+  ric_lattice lattice;
+  ric_spring own[2];
+  double force[2];
+} coupled;
+
+static ric_status set_coupled_force(ric_system *system, const double *p, double *given, void *user, ric_error *error) {
+  coupled *c = user;
+  c->force[0] = p[0];
+  *given = two_pi / c->lattice.frequency;
+  return ric_system_set_lattice(system, &c->lattice, error);
+}
+
+/* The impact of this family would push the particle through its wall: where the other one comes to its own is no
+ * grazing motion. */
+static void a_search_leaves_out_motions_that_pass_an_obstacle(void **state) {
+  (void)state;
+  static const size_t hit = 0;
+  coupled c = {.lattice = ric_lattice_default(2, RIC_ENDS_FREE),
+               .own = {{.linear = 1, .damping = 0.3}, {.linear = 1, .damping = 0.3}},
+               .force = {1, 0}};
+  ric_obstacle walls[2] = {ric_obstacle_wall(0, 0.5), ric_obstacle_wall(1, 1.2)};
+  ric_system *system = NULL;
+  ric_error error;
+  walls[0].restitution = walls[1].restitution = 0.8;
+  c.lattice.on_sites = c.own;
+  c.lattice.link.linear = 0.3;
+  c.lattice.frequency = 1.3;
+  c.lattice.force_cos = c.force;
+  assert_int_equal(ric_system_create_lattice(&c.lattice, walls, 2, &system, NULL), RIC_OK);
+  const ric_family_problem problem = {
+      .system = system,
+      .motion = {.kind = RIC_MOTION_FORCED, .sequence = &hit, .count = 1, .flow = ric_flow_options_default()},
+      .set = set_coupled_force,
+      .user = &c,
+      .parameters = 1};
+  const ric_family_options options = grazed_within(1, 10, 0.2);
+  const double q[2] = {0.5, 0}, u[2] = {-0.5, 0}, time = 1.5, period = two_pi / 1.3;
+  sought by_search = {.at = grazed_from(&problem, &options, 1, q, u, &time, period)};
+  assert_int_equal(search(&by_search).outcome, RIC_GRAZING_SEARCH_NONE);
+  sought by_find = {.at = grazed_from(&problem, &options, 1, q, u, &time, period)};
+  /* at such a point, which the family does come to, nothing can be started */
+  assert_int_equal(ric_grazing_find(by_find.at.family, by_find.at.z, 1, NULL, &by_find.at.grazing, &error), RIC_EINVAL);
+  assert_non_null(strstr(error.message, "the gap of obstacle 0"));
+  grazed_clear(&by_search.at);
+  grazed_clear(&by_find.at);
+  ric_system_destroy(&system);
+}
+
+static void a_search_that_does_not_begin_says_so(void **state) {
+  (void)state;
+  shaped s = {1, straight};
+  force_now = 0.5;
+  sought k = seek(&s, 1, 0.5, 2, set_force);
+  k.at.from = 3; /* out of the family's range */
+  assert_int_equal(search(&k).outcome, RIC_GRAZING_SEARCH_FAILED_START);
+  sought_clear(&k);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(two_grazing_points_at_once),
                                      cmocka_unit_test(one_of_them_is_found),
                                      cmocka_unit_test(acceleration_near_zero),
                                      cmocka_unit_test(no_obstacle_on_the_way),
                                      cmocka_unit_test(requests_out_of_range_are_refused),
-                                     cmocka_unit_test(even_motions_are_refused)};
+                                     cmocka_unit_test(even_motions_are_refused),
+                                     cmocka_unit_test(a_search_finds_what_is_found),
+                                     cmocka_unit_test(a_search_to_the_end_of_a_family_finds_none),
+                                     cmocka_unit_test(a_search_tells_where_a_grazing_point_is_degenerate),
+                                     cmocka_unit_test(a_search_leaves_out_motions_that_pass_an_obstacle),
+                                     cmocka_unit_test(a_search_that_does_not_begin_says_so)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,9 +1,9 @@
-/* Basins of attraction: which of many starts come to one attractor.
+/* Basins of attraction: which of many starts converge to one attractor.
  *
- * Runs from many starts (attractor.h) come to the same few attractors. Two runs have come to one if both found the same
- * period, and their states with the smallest observed number, `lowest`, agree: on a periodic attractor that state does
- * not depend on the start, nor on where along the cycle a run has ended. Attractors without a period have no such
- * state; all of them count as one. */
+ * Runs from many starts (attractor.h) converge to the same few attractors. Two of them have reached one if both found
+ * the same period, and their states with the smallest observed number, `lowest`, agree: on a periodic attractor that
+ * state does not depend on the start, nor on where along the cycle a run has ended. Attractors without a period have no
+ * such state; all of them count as one. */
 #ifndef RICOCHET_BASIN_H
 #define RICOCHET_BASIN_H
 
@@ -14,23 +14,23 @@
 RIC_BEGIN_DECLARATIONS
 
 typedef struct ric_basin_options {
-  size_t limit;    /* most attractors that are told apart, default 1000: every run is compared with all of them */
+  size_t limit;    /* most attractors that are distinguished, default 1000: every run is compared with all of them */
   double same_tol; /* 1e-4, relative to the largest number of the two states: far more than what is left of a transient,
-                      far less than what parts two cycles */
+                      far less than the distance of two cycles */
 } ric_basin_options;
 
 RIC_API ric_basin_options ric_basin_options_default(void);
 
-/** Labels of runs that have come to none of the attractors told apart. */
+/** Labels of runs that have reached none of the distinguished attractors. */
 enum {
   RIC_BASIN_NONE = -1, /* diverged or failed */
   RIC_BASIN_OTHER = -2 /* an attractor beyond the limit */
 };
 
-/** An attractor, and how many of the starts have come to it. */
+/** An attractor, and how many of the starts converge to it. */
 typedef struct ric_basin_attractor {
   size_t period;        /* 0: all that have none */
-  size_t first, starts; /* the first start that has come to it, in the order in which they were added; how many have */
+  size_t first, starts; /* the first start that converges to it, in the order in which they were added; how many do */
   const double *lowest; /* [size] of that first one; valid until the basin is destroyed */
 } ric_basin_attractor;
 

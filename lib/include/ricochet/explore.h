@@ -43,7 +43,7 @@ typedef struct ric_explore_options {
   size_t segments;       /* most of them, >= 1, the first one included; default 16 */
   double same_point_tol; /* 1e-6: two special points are one where families meet if parameter, period and energy agree
                             to this, relative to 1 + their size: special points are located to 1e-10 on either side,
-                            and families start at distances of 1e-3 */
+                            and families start with steps of 1e-3 */
 } ric_explore_options;
 
 RIC_API ric_explore_options ric_explore_options_default(void);
@@ -60,12 +60,12 @@ typedef struct ric_explore_segment {
   ric_curve_run run;  /* zeros where it was not begun */
 } ric_explore_segment;
 
-/** What the caller is told; non-zero ends the exploration, which is no error. Functions may be NULL. */
+/** What is reported to the caller; non-zero ends the exploration, which is no error. Functions may be NULL. */
 typedef struct ric_explore_visitor {
   /** Every point of a segment in order, as ric_family_follow; `reason` and `run` of the segment are not known yet. The
    *  family's special points may be traced in two parameters here. */
   int (*point)(const ric_explore_segment *segment, const ric_family_point *point, void *user);
-  /** The segment has ended; not told of one that the visitor has ended. */
+  /** The segment has ended; not called for one that the visitor has ended. */
   int (*end)(const ric_explore_segment *segment, void *user);
   void *user;
 } ric_explore_visitor;

@@ -64,6 +64,40 @@ RIC_API ric_grazing_options ric_grazing_options_default(void);
 RIC_API ric_status ric_grazing_find(ric_family *family, double *z, double parameter, const ric_grazing_options *options,
                                     ric_grazing *grazing, ric_error *error);
 
+#define RIC_GRAZING_SEARCH_LIST(X)                                                                                     \
+  X(RIC_GRAZING_SEARCH_FOUND, "found")                                                                                 \
+  X(RIC_GRAZING_SEARCH_NONE, "none")                 /* the family has reached its end without grazing an obstacle */  \
+  X(RIC_GRAZING_SEARCH_DEGENERATE, "degenerate")     /* it grazes in a way that the theory leaves out */               \
+  X(RIC_GRAZING_SEARCH_FAILED, "failed")             /* the family, or its grazing point, cannot be computed */        \
+  X(RIC_GRAZING_SEARCH_FAILED_START, "failed_start") /* the family does not begin */
+
+typedef enum ric_grazing_search_outcome {
+#define X(name, text) name,
+  RIC_GRAZING_SEARCH_LIST(X)
+#undef X
+      RIC_GRAZING_SEARCH_OUTCOMES
+} ric_grazing_search_outcome;
+
+/** The result of a search along a family. */
+typedef struct ric_grazing_search {
+  ric_grazing_search_outcome outcome;
+  char reason[256]; /* "" when found */
+  double reached;   /* parameter that the family has reached */
+  bool ended;       /* the family has ended without grazing: the run says how */
+  ric_curve_run run;
+  /* The grazing point as the family locates it, also a degenerate one; NaN and SIZE_MAX without one: */
+  double parameter, period, time;
+  size_t obstacle;
+} ric_grazing_search;
+
+/** Follows a family from a solution to the first motion that grazes and passes no obstacle elsewhere. As
+ *  ric_grazing_find, but without the grazing points of inadmissible motions, and with an outcome in place of an error.
+ *  @param grazing  set when it is found; else of no use
+ *  @returns RIC_OK with an outcome; RIC_EINVAL for even motions and options out of range; RIC_ESTOPPED, RIC_ENOMEM */
+RIC_API ric_status ric_grazing_search_along(ric_family *family, double *z, double parameter,
+                                            const ric_grazing_options *options, ric_grazing_search *search,
+                                            ric_grazing *grazing, ric_error *error);
+
 /** The same from a motion that grazes already, or nearly: a special point of kind `grazing`, or a point of a curve in
  *  two parameters.
  *  @param z  [unknowns]

@@ -47,17 +47,17 @@ typedef struct ric_special_point {
   double uncertainty;     /* of a critical parameter; NaN */
 } ric_special_point;
 
-/** Where special points are looked for. Borrowed. */
+/** Where special points are searched. Borrowed. */
 typedef struct ric_special_range {
   const ric_chain *chain;
   const ric_pattern *pattern;
   ric_along along;  /* gamma: at the period; period: at the gamma of the chain */
   double period;    /* along gamma */
   double low, high; /* 0 <= low <= high */
-  size_t points;    /* of the grid on which critical parameters are looked for, >= 2; 0: none of them */
+  size_t points;    /* of the grid of the search for critical parameters, >= 2; 0: without it */
 } ric_special_range;
 
-/** Tells the special points of a range, by parameter, then kind, then mode.
+/** Reports the special points of a range, by parameter, then kind, then mode.
  *  @param solver  its options' method and poll count
  *  @param point  non-zero ends it
  *  @returns RIC_OK, also when `point` has ended it; as ric_chain_resonances, ric_orbit_singular_points,

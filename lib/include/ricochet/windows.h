@@ -1,10 +1,10 @@
 /* Windows of a diagram: the intervals of a parameter p in which the attractor keeps its period.
  *
- * A line is a row of parameters with the attractor that a run has come to at each (attractor.h). Consecutive points
+ * A line is a row of parameters with the attractor that a run has reached at each (attractor.h). Consecutive points
  * whose attractors have one period, and as many impacts in it, are a window. Its edges are found twice:
  *
  *   on the attractor  between the last point inside and the first one outside runs halve the interval until it is
- *                     narrow: a bracket. Transients near an edge are arbitrarily long, so that a bracket tells where
+ *                     narrow: a bracket. Transients near an edge are arbitrarily long, so that a bracket says where
  *                     runs of this length change, and no more;
  *   on the cycle      the cycle is solved for and followed to the special point at which it stops being stable or
  *                     admissible (cycle_window.h, motion_window.h). That edge is exact.
@@ -39,7 +39,7 @@ typedef struct ric_window {
   char reason[128];        /* why it is not located, or one of its edges not by a special point; "" */
 } ric_window;
 
-/** What windows are looked for in. Arrays and functions are borrowed. */
+/** A line of attractors. Arrays and functions are borrowed. */
 typedef struct ric_window_line {
   size_t points;
   const double *p;                 /* [points] rising or falling */
@@ -54,7 +54,7 @@ typedef struct ric_window_line {
   ric_status (*run)(double p, const double *start, ric_attractor *attractor, void *user, ric_error *error);
   /** Locates the edges of a window on the cycle: ric_window_locate_cycle or _motion, say.
    *  @param z  [size] a state on the attractor at the point of the window
-   *  @param low, high  how far edges are to be looked for
+   *  @param low, high  bounds of the search for edges
    *  @param window  what stands above `On the cycle`, but its impacts, is set
    *  @returns RIC_ESTOPPED or RIC_ENOMEM to end the search with it; others leave the window not located, with the
    *           message as the reason */
@@ -68,7 +68,7 @@ typedef struct ric_windows {
   size_t count;
 } ric_windows;
 
-/** Finds the windows of a line. Edges on the cycle are looked for up to ten times beyond the line; where the line
+/** Finds the windows of a line. The search for edges on the cycle goes up to ten times beyond the line; where the line
  *  contains zero, up to its length beyond it.
  *  @param found  set; to be cleared by the caller after success. An edge is bracketed to a hundredth of the parameter,
  *                or 1e-9 of the distance of the two points of the line

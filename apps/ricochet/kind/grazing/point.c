@@ -1,5 +1,6 @@
 /* The grazing point of a task, and what follows there. */
 #include <math.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -48,30 +49,6 @@ ric_status grazing_end(grazing_task *g, grazing_outcome outcome, ric_status stat
 
 /* --- the point ---------------------------------------------------------------------------------------------------- */
 
-/* The first touch of a motion along the family that does not pass an obstacle elsewhere. */
-typedef struct touch {
-  ric_grazing *g;
-  bool began, found;
-  double parameter, reached; /* the family's own */
-  double time, period;
-  size_t obstacle;
-} touch;
-
-static int see(const ric_family_point *point, void *user) {
-  touch *k = user;
-  k->began = true;
-  k->reached = point->parameter;
-  if (point->kind != RIC_FAMILY_GRAZING || point->orbit->outcome == RIC_INADMISSIBLE)
-    return 0;
-  k->found = true;
-  k->parameter = point->parameter;
-  k->time = point->time;
-  k->period = point->orbit->period;
-  k->obstacle = point->obstacle;
-  memcpy(k->g->z, point->z, point->unknowns * sizeof *point->z);
-  return 1;
-}
-
 /* Writes what is known into the row, after which nothing outside it is referred to. */
 static void keep(grazing_task *g) {
   row_store(&g->plan->rows, g->row, &g->found);
@@ -109,39 +86,36 @@ static void put_point(grazing_task *g) {
   keep(g);
 }
 
-/* The family has come to its end. */
-static ric_status end_without(grazing_task *g, double from, const touch *k, const ric_curve_run *run) {
-  const bool whole = run->end == RIC_CURVE_BOUND || run->end == RIC_CURVE_POINTS || run->end == RIC_CURVE_CLOSED;
-  g->outcome = whole ? GRAZING_NONE : GRAZING_FAILED;
+/* Outcomes of a search, in their order. */
+static const grazing_outcome outcomes[RIC_GRAZING_SEARCH_OUTCOMES] = {GRAZING_FOUND, GRAZING_NONE, GRAZING_DEGENERATE,
+                                                                      GRAZING_FAILED, GRAZING_FAILED_START};
+
+/* The family has come to its end: in the study's parameter. */
+static void put_end(grazing_task *g, double from, const ric_grazing_search *found) {
   snprintf(g->reason, sizeof g->reason,
            "no obstacle is touched from %s = %.9g to %.9g, where the family ends: %s%s%.60s", g->b->followed->name,
-           branch_family_value(g->b, from), branch_family_value(g->b, k->reached), ric_curve_end_name(run->end),
-           run->reason[0] ? ": " : "", run->reason);
-  return RIC_OK;
-}
-
-/* A touch that cannot be made exact: of the point, what the family says of it. */
-static ric_status end_degenerate(grazing_task *g, const touch *k, ric_status status, const ric_error *error) {
-  put_when(g, k->parameter, k->period, k->time);
-  put_obstacle(g, k->obstacle);
-  keep(g);
-  return grazing_end(g, status == RIC_ENUMERIC ? GRAZING_DEGENERATE : GRAZING_FAILED, status, error);
+           branch_family_value(g->b, from), branch_family_value(g->b, found->reached),
+           ric_curve_end_name(found->run.end), found->run.reason[0] ? ": " : "", found->run.reason);
 }
 
 ric_status grazing_find(grazing_task *g, double *z, double parameter) {
-  touch k = {.g = &g->grazing, .reached = parameter};
-  ric_curve_run run = {0};
+  ric_grazing_search found;
   ric_error error = {0};
-  ric_status status = ric_family_follow(g->b->family, z, parameter, NULL, see, &k, &run, &error);
+  const ric_status status = ric_grazing_search_along(g->b->family, z, parameter, NULL, &found, &g->grazing, &error);
   if (status != RIC_OK)
-    return grazing_end(g, k.began ? GRAZING_FAILED : GRAZING_FAILED_START, status, &error);
-  if (!k.found)
-    return end_without(g, parameter, &k, &run);
-  status = ric_grazing_take(g->b->family, g->grazing.z, k.parameter, k.obstacle, k.time, NULL, &g->grazing, &error);
-  if (status != RIC_OK)
-    return end_degenerate(g, &k, status, &error);
-  g->outcome = GRAZING_FOUND;
-  put_point(g);
+    return grazing_end(g, GRAZING_FAILED_START, status, &error);
+  g->outcome = outcomes[found.outcome];
+  if (g->outcome == GRAZING_FOUND) {
+    put_point(g);
+    return RIC_OK;
+  }
+  snprintf(g->reason, sizeof g->reason, "%.*s", GRAZING_REASON_BYTES - 1, found.reason);
+  if (found.obstacle < SIZE_MAX) { /* what the family says of a point that cannot be made exact */
+    put_when(g, found.parameter, found.period, found.time);
+    put_obstacle(g, found.obstacle);
+    keep(g);
+  } else if (found.ended)
+    put_end(g, parameter, &found);
   return RIC_OK;
 }
 
