@@ -286,16 +286,16 @@ static void a_search_leaves_out_motions_that_pass_an_obstacle(void **state) {
       .set = set_coupled_force,
       .user = &c,
       .parameters = 1};
-  const ric_family_options options = grazed_within(1, 10, 0.2);
+  const ric_family_options options = grazing_family_options(1, 10, 0.2);
   const double q[2] = {0.5, 0}, u[2] = {-0.5, 0}, time = 1.5, period = two_pi / 1.3;
-  sought by_search = {.at = grazed_from(&problem, &options, 1, q, u, &time, period)};
+  sought by_search = {.at = grazing_family_from(&problem, &options, 1, q, u, &time, period)};
   assert_int_equal(search(&by_search).outcome, RIC_GRAZING_SEARCH_NONE);
-  sought by_find = {.at = grazed_from(&problem, &options, 1, q, u, &time, period)};
+  sought by_find = {.at = grazing_family_from(&problem, &options, 1, q, u, &time, period)};
   /* at such a point, which the family does come to, nothing can be started */
   assert_int_equal(ric_grazing_find(by_find.at.family, by_find.at.z, 1, NULL, &by_find.at.grazing, &error), RIC_EINVAL);
   assert_non_null(strstr(error.message, "the gap of obstacle 0"));
-  grazed_clear(&by_search.at);
-  grazed_clear(&by_find.at);
+  grazing_family_clear(&by_search.at);
+  grazing_family_clear(&by_find.at);
   ric_system_destroy(&system);
 }
 
