@@ -10,7 +10,7 @@
 #include "curve.h"
 
 /* From this size on LU with row pivoting: 9 times as quick as QR at 1000, twice at 30, since GSL does it in blocks. It
- * allocates its pivots in every call, which small problems are not to pay for. */
+ * allocates its pivots in every call, a cost that small problems avoid. */
 static const size_t lu_size = 32;
 
 static bool by_lu(const bordered *b) {
@@ -34,7 +34,7 @@ double *bordered_place(bordered *b, size_t unknowns, double *block) {
   return b->scratch + size;
 }
 
-/* A problem that fails without a word gets one. */
+/* A problem that fails without a message gets one. */
 static ric_status evaluate_bordered(bordered *b, const double *x, ric_error *error) {
   const ric_curve_problem *problem = b->problem;
   double p = x[b->size - 1];
@@ -68,7 +68,7 @@ static void factor(bordered *b) {
     gsl_linalg_QRPT_decomp(&a.matrix, &tau.vector, &p, &b->signum, &scratch.vector);
 }
 
-/* The least entry of the diagonal of the triangular factor, in modulus. */
+/* The smallest modulus on the diagonal of the triangular factor. */
 static double least_pivot(const bordered *b) {
   double least = INFINITY;
   for (size_t i = 0; i < b->size; i++)
@@ -124,10 +124,10 @@ bordered_determinant bordered_det(const bordered *b) {
   return det;
 }
 
-/* Corrections within this of the tolerance that no longer shrink are rounding of the residual. */
+/* Corrections below this multiple of the tolerance that no longer shrink are rounding of the residual. */
 static const double rounding = 1000;
 
-/* Rows of natural steps and of bounds hold the parameter: exactly, since problems may be undefined just beside it. */
+/* Rows of natural steps and of bounds fix the parameter exactly, since problems may be undefined next to it. */
 static bool holds_parameter(const ric_curve *c, const double *row) {
   for (size_t i = 0; i < c->problem.unknowns; i++)
     if (row[i] != 0)
@@ -154,8 +154,8 @@ static bool confirms(const ric_curve_options *o, double size, double before) {
   return size <= o->newton_tol || (size <= rounding * o->newton_tol && size > before / 2);
 }
 
-/* A correction that the next would only confirm, since they shrink faster and faster. Its factors are to be good for
- * tangents as well. */
+/* A correction that the next one would only confirm, since convergence is superlinear. Its factors must be accurate
+ * enough for tangents. */
 static bool suffices(const ric_curve_options *o, double size, double before) {
   return before < INFINITY && size <= o->locate_tol && size * size <= o->newton_tol * before;
 }
@@ -187,7 +187,7 @@ ric_status corrector_tangent(ric_curve *c, double *t, bordered_determinant *det,
   for (size_t i = 0; i < c->linear.size; i++)
     t[i] /= length;
   *det = bordered_det(&c->linear);
-  det->log += log(length); /* as if the tangent were the row: <row, t> = 1 / length */
+  det->log += log(length); /* converts to the tangent as the row: <row, t> = 1 / length */
   return RIC_OK;
 }
 

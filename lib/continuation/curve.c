@@ -170,7 +170,7 @@ static ric_status allocate_curve(ric_curve *c, ric_error *error) {
   c->block = calloc(numbers, sizeof *c->block);
   c->linear.permutation = calloc(size, sizeof *c->linear.permutation);
   c->found = calloc(tests + 2, sizeof *c->found);
-  gsl_error_handler_t *handler = gsl_set_error_handler_off(); /* which would abort when there is no memory */
+  gsl_error_handler_t *handler = gsl_set_error_handler_off(); /* which would abort without memory */
   c->brent = gsl_root_fsolver_alloc(gsl_root_fsolver_brent);
   gsl_set_error_handler(handler);
   if (!c->block || !c->linear.permutation || !c->found || !c->brent)

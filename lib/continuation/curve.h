@@ -13,14 +13,13 @@
  *   | J    F_p |
  *   | row_u  row_p |
  *
- * is regular at folds for a row along the tangent, and singular at branch points for every row. It is factorised by
- * QR with column pivoting where it is small, by LU where it is large. The determinant with the unit tangent as its row
- * (in the norm of continuation.h) depends on the point and the direction of walk alone; it follows from that with any
- * other row. */
+ * is regular at folds for a row along the tangent, and singular at branch points for every row. It is factorised by QR
+ * with column pivoting if it is small, by LU if it is large. The determinant with the unit tangent as its row (in the
+ * norm of continuation.h) depends only on the point and the direction; it follows from that with any other row. */
 
-/** A determinant, sign * exp(log), and how near the matrix is to a singular one. */
+/** A determinant, sign * exp(log), and the distance of the matrix from a singular one. */
 typedef struct bordered_determinant {
-  int sign; /* 0: singular, or not known */
+  int sign; /* 0: singular or unknown */
   double log;
   double least; /* diagonal entry of R or U in modulus: proportional to the distance from a branch point */
 } bordered_determinant;
@@ -30,7 +29,7 @@ typedef struct bordered {
   ric_poll poll;
   size_t size;           /* n + 1 */
   double *residual;      /* [n + 1] F, and room for a right-hand side */
-  double *J, *F_p;       /* [n][n], [n] as the problem gives them */
+  double *J, *F_p;       /* [n][n], [n] from the problem */
   double *matrix;        /* [n + 1][n + 1] factors */
   double *tau, *scratch; /* [n + 1] of QR */
   size_t *permutation;
@@ -39,17 +38,17 @@ typedef struct bordered {
   unsigned long long jacobians;
 } bordered;
 
-/** Numbers that the arrays of bordered take, for bordered_place. */
+/** Size of the arrays of bordered, for bordered_place. */
 size_t bordered_numbers(size_t unknowns);
 
-/** Lays the arrays into a block. @returns what is behind them */
+/** Places the arrays in a block. @returns the end of them */
 double *bordered_place(bordered *b, size_t unknowns, double *block);
 
 /** Evaluates the problem at x [n + 1] = (u, p) and factorises.
- *  @returns RIC_ENUMERIC when the matrix is exactly singular, which sets `singular`; what the problem returns */
+ *  @returns RIC_ENUMERIC if the matrix is exactly singular, which sets `singular`; what the problem returns */
 ric_status bordered_factor(bordered *b, const double *x, const double *row, ric_error *error);
 
-/** Newton's correction z [n + 1], which does not leave the hyperplane of the row. */
+/** Newton's correction z [n + 1] within the hyperplane of the row. */
 void bordered_correction(bordered *b, double *z);
 
 /** The null vector z [n + 1] of (J, F_p) with <row, z> = 1. */
@@ -57,7 +56,7 @@ void bordered_null_vector(bordered *b, double *z);
 
 bordered_determinant bordered_det(const bordered *b);
 
-/* What a continuation works with.
+/* Workspace of a continuation.
  *
  * Points are x [n + 1] = (u, p). Within a step the curve is a graph over sigma = <row, x - x_from>: the
  * pseudo-arclength with row = (t_u / n, t_p) of the tangent at its beginning, or +-p with row = (0, +-1). */
@@ -67,24 +66,24 @@ typedef struct curve_node {
   double *x, *t; /* [n + 1] point and unit tangent */
   double *tests; /* [tests] of the problem */
   bordered_determinant det;
-  double sigma; /* in the present step */
+  double sigma; /* in the current step */
   double arclength;
   int iterations;
   ric_curve_point_kind kind;
   size_t which;
 } curve_node;
 
-enum { CURVE_PAST = 2 }; /* points before the present one that predictions use */
+enum { CURVE_PAST = 2 }; /* previous points used by predictions */
 
 struct ric_curve {
   ric_curve_problem problem;
   ric_curve_options options;
   bordered linear;
-  double *row, *bound_row; /* [n + 1] of the step, and where p is given or on the way to a branch point */
+  double *row, *bound_row; /* [n + 1] of the step, and for a given p or the search of a branch point */
   double *z;               /* [n + 1] */
   curve_node start, from, to;
-  curve_node past[CURVE_PAST]; /* before `from`, the last first */
-  size_t pasts;                /* how many of them there are */
+  curve_node past[CURVE_PAST]; /* before `from`, latest first */
+  size_t pasts;                /* their number */
   curve_node trial, low, high; /* for locating */
   curve_node *found;           /* [tests + 2] special points of a step */
   gsl_root_fsolver *brent;
@@ -112,13 +111,13 @@ void curve_parameter_row(const ric_curve *c, double sign, double *row);
 /** Copies the contents of a node. */
 void curve_node_copy(const ric_curve *c, curve_node *to, const curve_node *from);
 
-/** What the problem's test functions are at a node; NaN is a value. */
+/** Values of the problem's test functions at a node; NaN is a value. */
 ric_status curve_tests(ric_curve *c, curve_node *node, ric_error *error);
 
 /** Locates the special points between the nodes `from` and `to` of the curve, a step over c->row, in order.
  *  @param count  set to their number; they are in c->found, their arclength from the start of the step
- *  @param missed  counts up sign changes at which no zero was found
- *  @returns what the problem returns, but RIC_ENUMERIC: that is a sign change missed */
+ *  @param missed  increased by the sign changes without a zero
+ *  @returns what the problem returns, except RIC_ENUMERIC, which counts as a missed sign change */
 ric_status locate_special(ric_curve *c, size_t *count, size_t *missed, ric_error *error);
 
 #endif

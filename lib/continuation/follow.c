@@ -1,4 +1,4 @@
-/* The walk along a curve. */
+/* The continuation run. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -8,14 +8,14 @@
 #include "corrector.h"
 #include "step.h"
 
-/* Special points nearer to a start along a given tangent, over the first step, are the start itself: a branch point or
- * a fold, known to rounding only. */
+/* Special points closer to a start with a given tangent, relative to the first step, are the start itself: a branch
+ * point or a fold, accurate to rounding only. */
 static const double start_itself = 1e-3;
 
-/* Steps that fail are shortened by it. Not by a half: those after it would end at the same place, a singular one. */
+/* Failed steps are shortened by this factor. Not by 1/2: the following steps would end at the same singular point. */
 static const double shorter = 0.4;
 
-/* The tangent may turn by this part of what is allowed before steps stop growing. */
+/* Steps grow as long as the tangent turns by less than this fraction of the allowed angle. */
 static const double turn_wanted = 0.7;
 
 typedef struct curve_follower {
@@ -35,7 +35,7 @@ static void end(curve_follower *w, ric_curve_end how, const char *reason) {
   snprintf(w->run->reason, sizeof w->run->reason, "%s", reason);
 }
 
-/* Shows a point to the caller. */
+/* Passes a point to the caller. */
 static void report_node(curve_follower *w, const curve_node *node, double step) {
   size_t n = w->c->problem.unknowns;
   const ric_curve_point point = {.kind = node->kind,
@@ -56,9 +56,10 @@ static ric_status begin_along(ric_curve *c, const double *tangent, ric_error *er
   curve_node *node = &c->from;
   double length = curve_norm(c, tangent);
   if (!(length > 0 && length < INFINITY))
-    return ric_fail(error, RIC_EINVAL, "a tangent of length %g, expected a finite one > 0", length);
+    return ric_fail(error, RIC_EINVAL, "tangent of length %g, expected a finite length > 0", length);
   if (c->options.natural && tangent[c->problem.unknowns] == 0)
-    return ric_fail(error, RIC_EINVAL, "natural steps along a tangent with t_p = 0");
+    return ric_fail(error, RIC_EINVAL,
+                    "natural steps with a tangent whose parameter component t_p = 0, expected pseudo-arclength");
   for (size_t i = 0; i < c->linear.size; i++)
     node->t[i] = tangent[i] / length;
   step_set_row(c);
@@ -73,7 +74,7 @@ static ric_status begin_at(ric_curve *c, ric_error *error) {
   curve_parameter_row(c, c->options.direction, c->row);
   ric_status status = corrector_run(c, c->row, node->x, false, &node->iterations, error);
   if (status == RIC_ENUMERIC && c->linear.singular)
-    return ric_fail(error, status, "the start at p = %.9g is singular: it needs a tangent",
+    return ric_fail(error, status, "the start at p = %.9g is singular: a tangent is required",
                     node->x[c->linear.size - 1]);
   RIC_TRY(status);
   return corrector_tangent(c, node->t, &node->det, error);
@@ -100,7 +101,7 @@ static ric_status begin_curve(curve_follower *w, double *u, double p, const doub
   return RIC_OK;
 }
 
-/* Steps to `to`, shorter and shorter until one succeeds. @param shortened  whether the first did not */
+/* Steps to `to`, with shorter and shorter steps until one succeeds. @param shortened  whether the first did not */
 static ric_status step_curve(curve_follower *w, bool *landed, bool *closed, bool *shortened) {
   ric_curve *c = w->c;
   *shortened = *landed = *closed = false;
@@ -117,8 +118,8 @@ static ric_status step_curve(curve_follower *w, bool *landed, bool *closed, bool
   return RIC_OK;
 }
 
-/* A quarter of the allowed corrections leaves a step as it is; two less double it, if the tangent has not turned too
- * much. Longer steps than that with more corrections each are not cheaper by the length. */
+/* With a quarter of the allowed corrections the step length is kept; with two less it doubles, unless the tangent has
+ * turned too much. Longer steps with more corrections each do not reduce the cost per length. */
 static void choose_next(curve_follower *w, bool shortened) {
   const ric_curve_options *o = &w->c->options;
   double turn = step_turn(w->c), wanted = fmax(1, o->iterations / 4.0);
@@ -129,7 +130,7 @@ static void choose_next(curve_follower *w, bool shortened) {
   w->h = fmin(o->step_most, fmax(o->step_least, factor * w->h));
 }
 
-/* Locates and shows the special points of the step. */
+/* Locates and reports the special points of the step. */
 static ric_status show_special(curve_follower *w) {
   ric_curve *c = w->c;
   size_t count;
@@ -143,7 +144,7 @@ static ric_status show_special(curve_follower *w) {
   return RIC_OK;
 }
 
-/* One step, shown; sets the end when it is the last. */
+/* One step, reported; sets the end if it is the last. */
 static ric_status advance_curve(curve_follower *w) {
   ric_curve *c = w->c;
   bool landed, closed, shortened, keep = !w->along; /* a given tangent may be a guess */

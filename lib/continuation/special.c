@@ -11,17 +11,17 @@
 #include "corrector.h"
 #include "step.h"
 
-/* The bracket is halved by corrected points to this part of the step. From there the cubic through its ends stands for
- * the curve: a step turns by less than 1, so it is good to about (1/256)^4 / 384 = 6e-13 of the radius of curvature at
- * the very worst, and, unlike Newton's method, knows nothing of the singular matrix at a branch point. */
+/* The bracket is bisected by corrected points to this fraction of the step. There the cubic through its ends replaces
+ * the curve: a step turns by less than 1, so the error is at most about (1/256)^4 / 384 = 6e-13 of the radius of
+ * curvature, and, unlike Newton's method, the cubic is not affected by the singular matrix at a branch point. */
 static const double shortest = 1.0 / 256;
 
-static const int most_trials = 100; /* of Brent's method, which halves at least every other time */
+static const int most_trials = 100; /* of Brent's method, which bisects at least every other time */
 
-/* A trial is not to be nearer than this to a branch point, over how far the ends of the bracket are. */
+/* Least distance of a trial from a branch point, relative to that of the ends of the bracket. */
 static const double too_near = 0.1;
 
-/* What is left of a function at its zero, over its values at the ends of the bracket: more, and it jumps. */
+/* Largest value of a function at its zero, relative to its values at the ends of the bracket; otherwise it jumps. */
 static const double jump = 0.1;
 
 typedef struct search {
@@ -44,7 +44,7 @@ static double value_of(const search *s, const curve_node *node) {
   }
 }
 
-/* A zero at the end of a step is found in it, not again in the next. NaN has no sign. */
+/* A zero at the end of a step belongs to it, not to the next one. NaN has no sign. */
 static bool sign_changes(double a, double b) {
   return (a < 0 && b >= 0) || (a > 0 && b <= 0);
 }
@@ -61,12 +61,12 @@ static void predict(const search *s, double sigma, curve_node *node) {
   node->sigma = sigma;
 }
 
-/* Whether the bracket holds a branch point, near which the corrector is not to be trusted. */
+/* Whether the bracket contains a branch point, near which the corrector is unreliable. */
 static bool holds_branch_point(const ric_curve *c) {
   return c->low.det.sign * c->high.det.sign <= 0;
 }
 
-/* Near a branch point what Newton's method has left over is blown up in the tangent: another correction takes it away.
+/* Near a branch point the remaining Newton error is amplified in the tangent: another correction removes it.
  */
 static ric_status correct(const search *s, curve_node *node) {
   ric_curve *c = s->c;
@@ -82,7 +82,7 @@ static bool near_branch_point(const ric_curve *c) {
   return !(c->trial.det.least >= too_near * fmax(c->low.det.least, c->high.det.least));
 }
 
-/* A corrected node well inside the bracket. A second place is tried, since the first may be a branch point. */
+/* A corrected node well inside the bracket. A second point is tried, since the first may be a branch point. */
 static ric_status trial_inside(const search *s) {
   static const double places[] = {0.5, 0.3};
   const ric_curve *c = s->c;
@@ -98,8 +98,9 @@ static ric_status trial_inside(const search *s) {
   return status;
 }
 
-/* Whether the trial, where the error of the bracket's cubic is about its largest, has been moved by no more than places
- * are known to. That says nothing of the cubic's tangent, nor near a branch point, where corrections tell little. */
+/* Whether the correction of the trial, where the error of the bracket's cubic is about largest, is within the accuracy
+ * of points. This does not bound the error of the cubic's tangent, and is no test near a branch point, where
+ * corrections are inaccurate. */
 static bool cubic_suffices(const search *s) {
   ric_curve *c = s->c;
   if (s->kind != RIC_CURVE_TEST || holds_branch_point(c))
@@ -109,7 +110,7 @@ static bool cubic_suffices(const search *s) {
   return curve_distance(c, c->z, c->trial.x) <= c->options.locate_tol * (1 + curve_norm(c, c->trial.x));
 }
 
-/* Shortens the bracket as far as the corrector gets.
+/* Shortens the bracket as far as the corrector converges.
  * @param found  whether the function is defined at all trials */
 static ric_status shorten(const search *s, bool *found) {
   ric_curve *c = s->c;
@@ -129,13 +130,13 @@ static ric_status shorten(const search *s, bool *found) {
   return RIC_OK;
 }
 
-/* Whether Newton's method has left a point where it was, as it does where it has a hold. */
+/* Whether Newton's method has hardly moved a point, as it does where it converges. */
 static bool correction_is_small(const ric_curve *c, const curve_node *before, const curve_node *after) {
   return curve_distance(c, before->x, after->x) <= c->options.locate_tol * (1 + curve_norm(c, before->x));
 }
 
-/* An end of the bracket that is still a point of the walk is corrected once more where the function is made of the
- * factors at it: its tangent is as good as its last correction was small, which is not enough for a zero close by. */
+/* An end of the bracket that is still a point of the run is corrected once more if the function depends on the factors
+ * there: its tangent is as accurate as its last correction was small, which is not enough for a nearby zero. */
 static ric_status sharpen(const search *s, curve_node *end, const curve_node *walked) {
   ric_curve *c = s->c;
   if (s->kind == RIC_CURVE_TEST || end->sigma != walked->sigma)
@@ -156,7 +157,7 @@ static ric_status determinant_at(const search *s, curve_node *node) {
   return status == RIC_ENUMERIC && c->linear.singular ? RIC_OK : status;
 }
 
-/* The function on the cubic, for the solver of GSL, which gives up at NaN. */
+/* The function on the cubic, for the solver of GSL, which stops at NaN. */
 static double value_on_cubic(double sigma, void *user) {
   search *s = user;
   curve_node *node = &s->c->trial;
@@ -176,7 +177,7 @@ static double value_on_cubic(double sigma, void *user) {
   return s->status == RIC_OK ? value_of(s, node) : NAN;
 }
 
-/* Brent's method on the bracket. @returns the zero, NaN when there is none */
+/* Brent's method on the bracket. @returns the zero, NaN if there is none */
 static double zero_of(search *s) {
   const ric_curve *c = s->c;
   gsl_function f = {value_on_cubic, s};
@@ -193,7 +194,7 @@ static double zero_of(search *s) {
   return code == GSL_SUCCESS && fabs(value_on_cubic(root, s)) <= jump * most ? root : NAN;
 }
 
-/* Sets a node to the special point: on the cubic at a branch point, else corrected. */
+/* Sets a node to the special point: on the cubic at a branch point, otherwise corrected. */
 static ric_status place_special(search *s, double sigma, curve_node *node) {
   ric_curve *c = s->c;
   predict(s, sigma, node);
@@ -206,7 +207,7 @@ static ric_status place_special(search *s, double sigma, curve_node *node) {
   return curve_tests(c, node, s->error);
 }
 
-/* One sign change between `from` and `to`. @param found  whether `node` has been set to its place */
+/* One sign change between `from` and `to`. @param found  whether `node` has been set to the zero */
 static ric_status locate(search *s, curve_node *node, bool *found) {
   ric_curve *c = s->c;
   curve_node_copy(c, &c->low, &c->from);
@@ -224,7 +225,7 @@ static ric_status locate(search *s, curve_node *node, bool *found) {
   return status == RIC_ENUMERIC ? RIC_OK : status;
 }
 
-/* Moves the last of the special points to its place among those before it. */
+/* Inserts the last of the special points in order among the previous ones. */
 static void sort_in(curve_node *found, size_t count) {
   for (size_t k = count - 1; k > 0 && found[k].sigma < found[k - 1].sigma; k--) {
     curve_node last = found[k];
@@ -266,10 +267,11 @@ ric_status locate_special(ric_curve *c, size_t *count, size_t *missed, ric_error
  * psi. Tangents v = alpha t + beta phi of branches satisfy psi . F_xx[v, v] = 0; t is one of the two solutions, so that
  * the other is 2 alpha psi . F_xx[t, phi] + beta psi . F_xx[phi, phi] = 0. */
 
-/* The smallest singular value of the bordered Jacobian over the next: more, and it is regular, or twice singular. */
+/* Largest ratio of the smallest singular value of the bordered Jacobian to the next; otherwise it is regular, or twice
+ * singular. */
 static const double singular = 1e-4;
 
-/* Of the coefficients of the equation: less, and the other tangent is that of the known branch. */
+/* Least relative size of the coefficients of the equation; otherwise the other tangent is that of the known branch. */
 static const double transversal = 1e-6;
 
 typedef struct null_space {
@@ -300,7 +302,7 @@ static void clear(null_space *k) {
       gsl_vector_free(vectors[i]);
 }
 
-/* A row of (J, F_p) that the problem has given, times a vector. */
+/* A row of (J, F_p) of the problem times a vector. */
 static double row_times(const ric_curve *c, size_t i, const double *v) {
   size_t n = c->problem.unknowns;
   double sum = c->linear.F_p[i] * v[n];
@@ -309,7 +311,7 @@ static double row_times(const ric_curve *c, size_t i, const double *v) {
   return sum;
 }
 
-/* Evaluates the Jacobian; that it is singular is no failure here. */
+/* Evaluates the Jacobian; a singular one is no failure here. */
 static ric_status jacobian_at(ric_curve *c, const double *x, ric_error *error) {
   ric_status status = bordered_factor(&c->linear, x, c->bound_row, error);
   return status == RIC_ENUMERIC && c->linear.singular ? RIC_OK : status;
@@ -375,7 +377,7 @@ ric_status ric_curve_switch(ric_curve *curve, const double *u, double p, const d
   double *x = curve->low.x, *t = curve->low.t, length = curve_norm(curve, tangent);
   null_space k = {0};
   if (!(length > 0 && length < INFINITY))
-    return ric_fail(error, RIC_EINVAL, "a tangent of length %g, expected a finite one > 0", length);
+    return ric_fail(error, RIC_EINVAL, "tangent of length %g, expected a finite length > 0", length);
   memcpy(x, u, n * sizeof *u);
   x[n] = p;
   for (size_t i = 0; i <= n; i++)

@@ -46,7 +46,7 @@ double cubic_length(const cubic *q) {
   return s.length * (fabs(s.scale_a) + 4 * curve_norm(q->c, q->c->z) + fabs(s.scale_b)) / 6;
 }
 
-/** How far the chord is from the mean of the end tangents: (turn)^2 / 12 of it on a circle, more when the ends lie on
+/** Deviation of the chord from the mean of the end tangents: (turn)^2 / 12 of it on a circle, more if the ends lie on
  *  different curves. */
 static double cubic_mismatch(const cubic *q) {
   slopes s = slopes_of(q);
@@ -56,8 +56,8 @@ static double cubic_mismatch(const cubic *q) {
   return curve_norm(q->c, z);
 }
 
-/* What the polynomial runs over: p, which natural steps give; else arclength, in which a circle is as smooth as can be.
- * (Over the progress its sixth derivative is 45 times as large.) */
+/* Variable of the polynomial: p for natural steps; otherwise arclength, in which a circle is smoothest. (In the
+ * progress sigma its sixth derivative is 45 times as large.) */
 static double place_of(const ric_curve *c, const curve_node *node) {
   size_t n = c->problem.unknowns;
   return c->options.natural ? c->row[n] * (node->x[n] - c->from.x[n]) : node->arclength - c->from.arclength;
@@ -91,7 +91,7 @@ static void extrapolate(const ric_curve *c, size_t count, double h, double *x) {
 
 /** The point ahead of `from` by h, in arclength or, for natural steps, in p: on the tangent, or on the polynomial
  * through `from` and points before it along their tangents, of the highest degree that changes the prediction by less
- * than half of what the one before did.
+ * than half as much as the previous degree did.
  *  @param x  [n + 1] set
  *  @returns its progress over c->row, which is > 0 */
 static double predictor_point(ric_curve *c, double h, double *x) {
@@ -109,7 +109,7 @@ static double predictor_point(ric_curve *c, double h, double *x) {
   return c->options.natural || count == 1 ? h : curve_progress(c, x);
 }
 
-/* The nodes change places; nothing is copied. */
+/* Swaps the nodes without copying. */
 void predictor_advance(ric_curve *c, bool keep) {
   curve_node oldest = c->past[CURVE_PAST - 1];
   for (size_t k = CURVE_PAST - 1; k > 0; k--)
@@ -120,16 +120,16 @@ void predictor_advance(ric_curve *c, bool keep) {
   c->pasts = !keep ? 0 : c->pasts < CURVE_PAST ? c->pasts + 1 : CURVE_PAST;
 }
 
-/* More than cubic_mismatch can be, over the chord, on a curve that turns by less than 1: the corrector has found
- * another curve. */
+/* Upper bound of cubic_mismatch, relative to the chord, on a curve that turns by less than 1; above it the corrector
+ * has found another curve. */
 static const double other_curve = 0.1;
 
-/* A step that ends so much nearer to a singular point than it begins has a tangent that is rounding. Walks in round
- * numbers meet branch points exactly. */
+/* A step that ends closer to a singular point by this factor than it begins has a tangent dominated by rounding. Runs
+ * in round numbers hit branch points exactly. */
 static const double too_near = 1e-3;
 
-/* How near the cubic of a step must come to the start of the curve, over the step, for a look at whether it has closed;
- * and for taking it as closed where the corrector does not converge, at a branch point. */
+/* Distance of the cubic of a step from the start of the curve, relative to the step, below which closing is tested; and
+ * below which the curve counts as closed if the corrector does not converge, at a branch point. */
 static const double near_start = 1e-2, at_start = 1e-4;
 
 static double parameter(const ric_curve *c, const curve_node *node) {
@@ -143,7 +143,7 @@ void step_set_row(ric_curve *c) {
     curve_tangent_row(c, c->from.t, c->row);
 }
 
-/* By the chord between the tangents: their product loses small angles. */
+/* From the chord between the tangents: the inner product loses small angles. */
 static double angle(const ric_curve *c, const double *a, const double *b) {
   return 2 * asin(fmin(1, curve_distance(c, a, b) / 2));
 }
@@ -179,7 +179,7 @@ static bool beyond(const ric_curve *c, double p) {
   return p > c->options.p_high || p < c->options.p_low;
 }
 
-/* The end of the range that p is beyond. */
+/* The bound that p has passed. */
 static double bound_before(const ric_curve *c, double p) {
   return p > c->options.p_high ? c->options.p_high : c->options.p_low;
 }
@@ -197,7 +197,7 @@ static ric_status correct(ric_curve *c, const double *row, ric_error *error) {
   return corrector_tangent(c, c->to.t, &c->to.det, error);
 }
 
-/* Corrects `to` at the end of the range, near a prediction there. @param most  the progress that is allowed */
+/* Corrects `to` at the end of the range, near a prediction there. @param most  largest allowed progress */
 static ric_status correct_at_bound(ric_curve *c, double bound, double most, ric_error *error) {
   double *p = &c->to.x[c->problem.unknowns];
   *p = bound;
@@ -206,11 +206,11 @@ static ric_status correct_at_bound(ric_curve *c, double bound, double most, ric_
   *p = bound;
   c->to.sigma = curve_progress(c, c->to.x);
   if (!(c->to.sigma > 0 && c->to.sigma <= most))
-    return ric_fail(error, RIC_ENUMERIC, "the end of the range, p = %.9g, is not met in the step", bound);
+    return ric_fail(error, RIC_ENUMERIC, "the bound p = %.9g is not reached in the step", bound);
   return RIC_OK;
 }
 
-/* A step whose tangent leaves the range goes to its end at once: the problem may be undefined beyond. */
+/* A step whose tangent leaves the range goes directly to the bound: the problem may be undefined beyond it. */
 static ric_status step_to_bound(ric_curve *c, double h, ric_error *error) {
   double p = parameter(c, &c->from), bound = bound_before(c, parameter(c, &c->to));
   predict(c, h * (bound - p) / (parameter(c, &c->to) - p));
@@ -224,7 +224,7 @@ static ric_status step_freely(ric_curve *c, double h, ric_error *error) {
   return check_next_point(c, error);
 }
 
-/* A step that has left the range is moved back to its end along the cubic. */
+/* A step that has left the range is moved back to the bound along the cubic. */
 static ric_status move_to_bound(ric_curve *c, ric_error *error) {
   double from = parameter(c, &c->from), to = parameter(c, &c->to), bound = bound_before(c, to), end = c->to.sigma;
   cubic q = step_cubic(c);
@@ -233,7 +233,7 @@ static ric_status move_to_bound(ric_curve *c, ric_error *error) {
   return correct_at_bound(c, bound, end, error);
 }
 
-/* Where the end of the range is not met, the curve may bend back before it. */
+/* If the bound is not reached, the curve may bend back before it. */
 ric_status step_try(ric_curve *c, double h, bool *landed, ric_error *error) {
   predict(c, h);
   *landed = beyond(c, parameter(c, &c->to));
@@ -248,7 +248,7 @@ ric_status step_try(ric_curve *c, double h, bool *landed, ric_error *error) {
   return curve_tests(c, &c->to, error);
 }
 
-/* Whether the curve comes back to its start at `trial`, which is on the cubic of the step. */
+/* Whether the curve returns to its start at `trial`, which is on the cubic of the step. */
 static ric_status returns_to_start(ric_curve *c, bool *returns, ric_error *error) {
   const curve_node *start = &c->start;
   double *x = c->trial.x, gap = curve_distance(c, x, start->x), step = c->to.sigma;

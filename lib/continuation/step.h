@@ -6,8 +6,8 @@
 
 /* The cubic through two points of a curve along their tangents.
  *
- * A graph over sigma = <row, x>, so that x' = t / <row, t>. With the points L apart it leaves the curve by at most
- * L^4 / 384 times the fourth derivative. */
+ * A graph over sigma = <row, x>, so that x' = t / <row, t>. With the distance L of the points its error is at most L^4
+ * / 384 times the fourth derivative. */
 
 typedef struct cubic {
   const ric_curve *c;
@@ -24,9 +24,9 @@ void cubic_tangent(const cubic *q, double sigma, double *t);
 /** Its length, by Simpson's rule. */
 double cubic_length(const cubic *q);
 
-/* Where a curve goes on, from the last points of the walk. */
+/* Prediction from the last points of the run. */
 
-/** Makes `to` the point that the next step is from. @param keep  whether predictions may use the tangent of `from` */
+/** Makes `to` the start of the next step. @param keep  whether predictions may use the tangent of `from` */
 void predictor_advance(ric_curve *c, bool keep);
 
 /* One step along the curve. */
@@ -34,10 +34,10 @@ void predictor_advance(ric_curve *c, bool keep);
 /** Sets c->row for steps that begin at `from`. */
 void step_set_row(ric_curve *c);
 
-/** A step of the length h from `from` to `to`, corrected, with tangent and tests; to the end of the range of p where it
- *  would leave that.
- *  @param landed  set to whether `to` lies on the end of the range
- *  @returns RIC_ENUMERIC with the reason when the step has to be shorter */
+/** A step of the length h from `from` to `to`, corrected, with tangent and tests; to the bound of p if it would leave
+ *  the range.
+ *  @param landed  set to whether `to` lies on a bound
+ *  @returns RIC_ENUMERIC with the reason if the step has to be shorter */
 ric_status step_try(ric_curve *c, double h, bool *landed, ric_error *error);
 
 /** Moves `to` back to the start of the curve if the step passes it in the same direction.

@@ -1,4 +1,4 @@
-/* Parameters at which multipliers leave the circle or come back. */
+/* Parameters at which multipliers leave the unit circle or return to it. */
 #include <math.h>
 #include <stdlib.h>
 
@@ -7,14 +7,14 @@
 #include "orbit_multipliers.h"
 #include "ricochet/orbit_multipliers.h"
 
-/* Rounding of alpha, over the largest entry of the reduced matrix; ten times what is seen, and its root for the
- * imaginary part of two that meet. */
+/* Rounding of alpha, relative to the largest entry of the reduced matrix: ten times the observed value; its root for
+ * the imaginary part of two that collide. */
 static const double rounding = 1e-13;
 
-/* Alpha outside by more than the rounding and less than this times it are not counted on: the census is uncertain. */
+/* If an alpha is outside by more than the rounding and less than this multiple of it, the census is uncertain. */
 static const double uncertain = 10;
 
-/* Brackets are halved to this length, relative to parameters above 1. */
+/* Brackets are bisected to this length, relative to parameters above 1. */
 static const double bracket = 1e-11;
 
 const char *ric_critical_name(ric_critical_kind kind) {
@@ -30,11 +30,11 @@ const char *ric_critical_name(ric_critical_kind kind) {
   return "unknown kind";
 }
 
-/* How many multipliers are outside at a parameter. */
+/* Number of multipliers outside at a parameter. */
 typedef struct census {
   double parameter;
   bool known;                         /* there is an orbit, with impacts that do not graze */
-  bool certain;                       /* no alpha is so close to leaving the circle that rounding decides */
+  bool certain;                       /* no alpha is so close to the edge of the unit circle that rounding decides */
   size_t outside[RIC_CRITICAL_KINDS]; /* real above 1, real below -1, complex */
   ric_complex nearest;                /* the complex alpha nearest to the real axis, im > 0 */
   double error;                       /* rounding of alpha */
@@ -92,7 +92,7 @@ static ric_status take_census(family *f, double parameter, census *c) {
   if (ric_poll_stops(f->solver->options.poll))
     return ric_fail(f->error, RIC_ESTOPPED, "stopped at parameter %g", parameter);
   RIC_TRY(ric_orbit_solve(f->solver, &f->chain, f->pattern, period, &f->orbit, f->error));
-  /* Where a pair breaks a symmetry of the orbit at +1 the contact equations are singular, and solvable: resonant. */
+  /* At a symmetry breaking (a pair at +1) the contact equations are singular but solvable: resonant. */
   c->known =
       f->orbit.outcome == RIC_ADMISSIBLE || f->orbit.outcome == RIC_INADMISSIBLE || f->orbit.outcome == RIC_RESONANT;
   if (!c->known)
@@ -115,8 +115,8 @@ static bool differ(const census *a, const census *b) {
   return differs;
 }
 
-/* Two that have met are alpha +- i r with r^2 linear in the parameter: a collision is where the line through two
- * censuses outside meets 0. It stays the middle of the bracket when it would leave it. */
+/* Two collided alpha are alpha +- i r with r^2 linear in the parameter: the collision is the zero of the line through
+ * two censuses outside, or the middle of the bracket if that zero lies outside the bracket. */
 static ric_status sharpen(family *f, const census *a, const census *b, ric_critical *critical) {
   census beyond;
   const census *outside = critical->outwards ? b : a;
@@ -135,7 +135,8 @@ static ric_status sharpen(family *f, const census *a, const census *b, ric_criti
   return RIC_OK;
 }
 
-/* What changes across the last bracket. Changes that leave the number outside alone happen off the circle. */
+/* Reports the changes across the last bracket. Changes that do not affect the number outside happen off the unit
+ * circle. */
 static ric_status report(family *f, const census *a, const census *b) {
   bool outwards = total(b) > total(a);
   for (int kind = 0; kind < RIC_CRITICAL_KINDS && total(a) != total(b); kind++) {
@@ -155,8 +156,8 @@ static ric_status report(family *f, const census *a, const census *b) {
   return RIC_OK;
 }
 
-/* A certain census between two others; where there is none, `middle` is uncertain, and unknown where there is no orbit.
- * At the edge of a singular window rounding decides whether there is one. */
+/* A certain census between two others. If there is none, `middle` is uncertain, or unknown without an orbit. At the
+ * edge of a singular window rounding decides whether there is an orbit. */
 static ric_status between(family *f, const census *a, const census *b, census *middle) {
   static const double places[] = {0.5, 0.34, 0.66, 0.1, 0.9, 0.02, 0.98};
   census here;

@@ -1,4 +1,4 @@
-/* Multipliers by the determinant: those on the circle counted and found by signature, and the verdict. */
+/* Multipliers by the determinant: those on the unit circle are counted and located by signature; the verdict. */
 #include "determinant.h"
 
 #include <math.h>
@@ -10,14 +10,14 @@
 #include "numeric/constants.h"
 #include "winding.h"
 
-/* Arcs of this length are points. With a pole on them or next to one, rounding is 1e-16 over the distance of alpha, and
- * this is the shortest distance. */
+/* Arcs of this length count as points. With a pole on or next to an arc, rounding is 1e-16 over the distance of alpha,
+ * and the second value is the shortest distance. */
 static const double shortest = 4e-16, shortest_at_pole = 1e-11;
 
-/* Arcs shorter than this may end in the rounding of a zero: a sum of bounds that grows there is noise. */
+/* Arcs shorter than this may end within the rounding of a zero: an increase of the sum of bounds there is noise. */
 static const double noisy = 1e-9;
 
-/* Where an arc is divided: not in the middle, where symmetry puts poles. */
+/* Where an arc is divided: not in the middle, where symmetric systems have poles. */
 static const double division = 0.4871;
 
 typedef struct arc {
@@ -26,12 +26,12 @@ typedef struct arc {
   size_t first, last;                 /* poles [first, last) lie on it */
 } arc;
 
-/* Length of an arc with a pole that is not divided: alpha = cos(angle). */
+/* Length below which an arc with a pole is not divided: alpha = cos(angle). */
 static double undivided(const arc *a) {
   return shortest_at_pole / fmax(fmax(sin(a->low), sin(a->high)), 1e-8);
 }
 
-/* Poles on it that are seen, and the sum of their signs. */
+/* Poles of f on it, and the sum of their signs. */
 static size_t poles_on(const secular *s, const arc *a, long *signs) {
   size_t seen = 0;
   *signs = 0;
@@ -87,14 +87,14 @@ static void divide(secular *s, const arc *a, double at, arc *left, arc *right) {
   left->last = right->first = first_above(s, a->first, a->last, at);
 }
 
-/* A place between the poles in the middle of the arc; its low end if they coincide. */
+/* A point between the poles in the middle of the arc; its low end if they coincide. */
 static double between_poles(const secular *s, const arc *a) {
   size_t middle = (a->first + a->last) / 2;
   double left = s->poles[middle - 1].angle, right = s->poles[middle].angle;
   return right - left > 1e-13 ? left + division * (right - left) : a->low;
 }
 
-/* A place for dividing an arc that keeps its distance from the poles on it. */
+/* A point for dividing an arc away from the poles on it. */
 static double place(const secular *s, const arc *a) {
   double length = a->high - a->low, at = a->low + division * length;
   for (int i = 1; i <= 4; i++) {
@@ -135,8 +135,8 @@ static size_t unit_circle_near_one(secular *s, double band) {
   return hidden_below(s, band) + bound_on(&near, signs);
 }
 
-/* The search: arcs of count 0 with one pole are divided a few times more, in case two multipliers of opposite sign are
- * on them. */
+/* The search: arcs of count 0 with one pole are divided a few more times, in case they contain two multipliers of
+ * opposite sign. */
 typedef struct search {
   secular *s;
   double *angles;
@@ -151,8 +151,8 @@ static int sign_at(secular *s, double angle, double *modulus) {
   return cos(cimag(value)) < 0 ? 1 : -1;
 }
 
-/* Two multipliers of opposite sign on an arc without poles change the sign of det H between them: looks for such a
- * place by golden section. */
+/* Two multipliers of opposite sign on an arc without poles change the sign of det H between them: searches such a place
+ * by golden section. */
 static bool dips(secular *s, const arc *a, double *where) {
   const double golden = 0.3819660112501051;
   double low = a->low, high = a->high, x = low + golden * (high - low), at_x, at_y;
@@ -161,7 +161,7 @@ static bool dips(secular *s, const arc *a, double *where) {
     *where = x;
     return true;
   }
-  for (int i = 0; i < 30; i++) { /* x divides [low, high] in the golden ratio, on either side */
+  for (int i = 0; i < 30; i++) { /* x divides [low, high] in the golden ratio, on alternate sides */
     double y = low + high - x;
     bool changes = sign_at(s, y, &at_y) != sign, left = y < x;
     if (changes) {
@@ -211,7 +211,7 @@ static void find_on(search *x, const arc *a, int spare) {
 
 /** The angles of the pairs on the circle above `from`, to rounding, without the one at 1.
  *  @param angles  [n], or NULL to count; @param count  set to their number
- *  @param wanted  no need to look for more
+ *  @param wanted  upper limit: stop when found
  *  @returns RIC_ESTOPPED */
 static ric_status unit_circle_find(secular *s, double from, size_t wanted, double *angles, size_t *count,
                                    ric_error *error) {
@@ -232,7 +232,7 @@ static ric_status unit_circle_find(secular *s, double from, size_t wanted, doubl
   return RIC_OK;
 }
 
-/* What the counts tell. */
+/* Results of the counts. */
 typedef struct multiplier_counts {
   size_t on_circle; /* pairs, at least */
   size_t outside;   /* beyond the last contour */
@@ -240,14 +240,14 @@ typedef struct multiplier_counts {
   size_t farther;   /* beyond the contour before it */
   double far;       /* log of its radius */
   size_t near_one;  /* multipliers too close to 1, besides the trivial ones */
-  double from;      /* angle from which the circle is looked at */
+  double from;      /* angle from which the unit circle is examined */
 } multiplier_counts;
 
-/* More multipliers than this between the last two contours are counted and not located: hundreds of them leave the
- * circle of a large ring by 1e-6 where modes of both signs overlap. */
+/* If there are more multipliers than this between the last two contours, they are counted but not located: in a large
+ * ring hundreds leave the unit circle by 1e-6 where modes of both signs overlap. */
 enum { MOST_BETWEEN = 64 };
 
-/* A contour that meets a multiplier is moved a little. */
+/* A contour through a multiplier is shifted slightly. */
 static bool count_outside(secular *s, double distance, multiplier_counts *t) {
   t->farther = t->outside;
   t->far = t->contour > 0 ? t->contour : INFINITY;
@@ -263,8 +263,9 @@ static bool all_counted(const secular *s, const multiplier_counts *t) {
   return t->on_circle + t->outside >= s->particles;
 }
 
-/* Multipliers within `band` of 1 besides the trivial ones, on the circle or off it: by winding around 1. There rounding
- * decides about signs, and the circle is looked at beyond. Where a pole is as close, on the circle only. */
+/* Counts multipliers within `band` of 1 besides the trivial ones, on the unit circle or off it, by the winding number
+ * around 1. There rounding decides signs, so the unit circle is examined beyond it. If a pole is as close, only those
+ * on the circle are counted. */
 static void count_near_one(secular *s, double band, multiplier_counts *t) {
   if (winding_box(s, CMPLX(-band, -band), CMPLX(band, band), &t->near_one)) {
     t->from = t->near_one > 0 ? band : 0;
@@ -274,8 +275,8 @@ static void count_near_one(secular *s, double band, multiplier_counts *t) {
   t->from = 0;
 }
 
-/* Contours that come closer to the circle and bounds on it that become sharper, until nothing is left between. A search
- * of the circle comes last: what is outside decides without it. */
+/* Uses contours closer and closer to the unit circle and sharper bounds on it, until all multipliers are counted. A
+ * search of the circle comes last: multipliers outside decide without it. */
 static ric_status count_all(secular *s, const ric_orbit_multiplier_options *o, multiplier_counts *t, ric_error *error) {
   static const int depth[] = {4, 40};
   const double distances[] = {fmax(0.1, o->judge.band), fmax(1e-3, o->judge.band), o->judge.band};
@@ -289,7 +290,7 @@ static ric_status count_all(secular *s, const ric_orbit_multiplier_options *o, m
     if (s->stopped)
       return ric_fail(error, RIC_ESTOPPED, "stopped at |mu| = 1 + %g", distances[stage]);
     if (!counted)
-      return ric_fail(error, RIC_ENUMERIC, "winding number along |mu| = 1 + %g is not whole", distances[stage]);
+      return ric_fail(error, RIC_ENUMERIC, "winding number along |mu| = 1 + %g is not an integer", distances[stage]);
   }
   if (all_counted(s, t) || t->outside > 0)
     return RIC_OK;
@@ -299,7 +300,7 @@ static ric_status count_all(secular *s, const ric_orbit_multiplier_options *o, m
   return RIC_OK;
 }
 
-/* Those beyond the farther contour, then those between the two. */
+/* Locates those beyond the farther contour, then those between the two. */
 static void locate(secular *s, const multiplier_counts *t, ric_multipliers *m) {
   size_t between = 0;
   m->count = 0;
@@ -311,7 +312,7 @@ static void locate(secular *s, const multiplier_counts *t, ric_multipliers *m) {
   m->count += between;
 }
 
-/* On the circle there are two of each pair. */
+/* On the unit circle each pair contributes two. */
 static void put_on_circle(ric_multipliers *m, const double *angles, size_t count) {
   for (size_t i = 0; i < count && m->count + 2 <= m->dimension; i++) {
     double re = cos(angles[i]), im = sin(angles[i]);
@@ -327,8 +328,8 @@ static void put_inverses(ric_multipliers *m) {
   }
 }
 
-/* All 2n multipliers: those outside, their inverses, those on the circle, and the double 1. Multipliers of opposite
- * sign that nearly meet may escape the search on the circle; then fewer are known. */
+/* All 2n multipliers: those outside, their inverses, those on the circle, and the double 1. The search on the circle
+ * may miss multipliers of opposite sign that nearly coincide; then fewer are known. */
 static ric_status complete(secular *s, double from, const ric_orbit_multiplier_options *o, ric_multipliers *m,
                            ric_error *error) {
   size_t found = 0, wanted = s->particles - 1 - m->count;
@@ -345,7 +346,7 @@ static ric_status complete(secular *s, double from, const ric_orbit_multiplier_o
   if (m->count == m->dimension && found == wanted)
     multipliers_judge(m, 2, &o->judge);
   else
-    multipliers_sort(m); /* the verdict stands */
+    multipliers_sort(m); /* the verdict is not changed */
   return RIC_OK;
 }
 
@@ -358,7 +359,7 @@ ric_status determinant_multipliers(secular *s, const ric_orbit_multiplier_option
   size_t n = s->particles, unlocated = t.on_circle + t.outside < n ? n - t.on_circle - t.outside : 0;
   locate(s, &t, m);
   if (s->stopped)
-    return ric_fail(error, RIC_ESTOPPED, "stopped on the way to the multipliers outside");
+    return ric_fail(error, RIC_ESTOPPED, "stopped before the multipliers outside the unit circle were located");
   size_t missing = t.outside > m->count ? t.outside - m->count : 0;
   multipliers_judge_outside(m, unlocated, t.near_one, &o->judge);
   if (missing > t.near_one) {

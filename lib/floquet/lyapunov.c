@@ -14,7 +14,7 @@ ric_lyapunov_options ric_lyapunov_options_default(void) {
   return (ric_lyapunov_options){.interval = 1};
 }
 
-/* Shorter ones are lost in the rounding of time. */
+/* Shorter intervals are lost in the rounding of time. */
 static double least_interval(double t) {
   return 1e-12 * (1 + fabs(t));
 }
@@ -86,7 +86,7 @@ static void join(ric_run *whole, const ric_run *part) {
   whole->flow.starts += before.flow.starts;
 }
 
-/* The tangent vectors at the end of a stride: factorised, their growth added when it counts. */
+/* At the end of a stride: factorises the tangent vectors and adds their growth, after the transient. */
 static void factorise_stride(lyapunov_course *c, double length) {
   size_t n = c->n, count = c->count;
   memcpy(c->vectors, ric_trajectory_dq(c->trajectory), n * count * sizeof *c->vectors);
@@ -100,8 +100,8 @@ static void factorise_stride(lyapunov_course *c, double length) {
     c->sum[k] += c->growth[k];
 }
 
-/* Vectors part by no more than e^7 in a stride: what is left of one that lies in the span of those before it has been
- * put out by a contact. */
+/* Adapts the stride so that growth ratios of vectors stay below e^7: a vector in the span of the previous ones has then
+ * lost its direction at a contact, not by rounding. */
 static void adapt_stride(lyapunov_course *c) {
   double most = -INFINITY, least = INFINITY;
   for (size_t k = 0; k < c->count; k++)
@@ -114,7 +114,7 @@ static void adapt_stride(lyapunov_course *c) {
   c->stride = fmax(c->stride, least_interval(time_now(c)));
 }
 
-/* The end of the present interval is in c->mark; strides that would leave a sliver of it go all the way. */
+/* The end of the current interval is c->mark; a stride that would leave a very short rest is extended to it. */
 static double next_stop(lyapunov_course *c, double end) {
   double t = time_now(c);
   if (!(c->mark > t))
@@ -122,7 +122,7 @@ static double next_stop(lyapunov_course *c, double end) {
   return t + 1.2 * c->stride < c->mark ? t + c->stride : c->mark;
 }
 
-/* Shows the exponents so far. @returns whether that was enough */
+/* Reports the exponents so far. @returns whether the caller stops */
 static bool report(lyapunov_course *c, ric_run *whole) {
   const ric_lyapunov_options *o = &c->options;
   if (!(c->time > 0) || !o->history)
@@ -146,7 +146,7 @@ static ric_status advance_course(lyapunov_course *c, double end, ric_run *whole,
   *over = part.outcome != RIC_RUN_COMPLETED || time_now(c) >= end;
   if (ric_trajectory_columns(c->trajectory) != c->count)
     return RIC_OK;
-  /* Also of a stride that has not moved time: an observer may have ended it at an impact. */
+  /* Also after a stride without progress in time: an observer may have ended it at an impact. */
   factorise_stride(c, time_now(c) - start);
   adapt_stride(c);
   if (time_now(c) >= c->mark || *over)
@@ -156,7 +156,7 @@ static ric_status advance_course(lyapunov_course *c, double end, ric_run *whole,
 
 ric_status lyapunov_course_run(lyapunov_course *c, double end, ric_run *run, ric_error *error) {
   c->mark = time_now(c);
-  /* Contacts that are closed at the start come before the tangent vectors. */
+  /* Contacts that are closed at the start are processed before tangent vectors are set. */
   RIC_TRY(ric_trajectory_run(c->trajectory, time_now(c), c->options.observer, run, error));
   bool over = run->outcome != RIC_RUN_COMPLETED;
   gsl_error_handler_t *handler = gsl_set_error_handler_off();

@@ -1,7 +1,7 @@
-/* Lyapunov exponents along a motion that is run part by part: internal to the room.
+/* Lyapunov exponents along a motion that consists of several runs: internal to the room.
  *
- * A course carries tangent vectors along a trajectory from one run to the next, makes them orthonormal on the way and
- * adds up how they grow. Between runs the sums may be begun anew and the clock of the trajectory may be set. */
+ * A course propagates tangent vectors along a trajectory from one run to the next, orthonormalises them and sums their
+ * growth. Between runs the sums may be reset and the time of the trajectory may be set. */
 #ifndef RICOCHET_INTERNAL_LYAPUNOV_H
 #define RICOCHET_INTERNAL_LYAPUNOV_H
 
@@ -15,29 +15,29 @@ typedef struct lyapunov_course {
   size_t n, size, count;
   double *vectors; /* [size][count] */
   double *growth;  /* [count] logarithms of R's diagonal of one stride */
-  double *sum;     /* [count] of them all */
-  double begin;    /* time at which the sums begin; -INFINITY unless a caller sets it */
-  double time;     /* over which they go */
-  double mark;     /* end of the present interval */
-  double stride;   /* from one factorisation to the next within it */
+  double *sum;     /* [count] their sums */
+  double begin;    /* time at which the sums begin; -INFINITY unless set by the caller */
+  double time;     /* over which they are taken */
+  double mark;     /* end of the current interval */
+  double stride;   /* time between two factorisations within it */
   orthonormal_work work;
 } lyapunov_course;
 
-/** @param options  copied, in range; `transient` is the caller's to heed
- *  @returns RIC_ENOMEM; clear it whatever the status. */
+/** @param options  copied, in range; the caller handles `transient`
+ *  @returns RIC_ENOMEM; clear it for every status. */
 ric_status lyapunov_course_init(lyapunov_course *course, ric_trajectory *trajectory,
                                 const ric_lyapunov_options *options, ric_error *error);
 void lyapunov_course_clear(lyapunov_course *course);
 
-/** The first vectors and strides again, for another motion of the trajectory. */
+/** Resets vectors and strides, for another motion of the trajectory. */
 void lyapunov_course_restart(lyapunov_course *course);
 
-/** Begins the sums anew; the vectors stay as they are. */
+/** Resets the sums; the vectors are kept. */
 void lyapunov_course_forget(lyapunov_course *course);
 
 /** Runs the trajectory to `end`.
- *  @param run  set, counts of all that was run. With an outcome that says that the tangent vectors have no way on, they
- *              are lost for good: the trajectory may go on without the course
+ *  @param run  set, with counts of the whole run. With an outcome that says that tangent vectors are undefined, they
+ *              are lost permanently: the trajectory can continue without the course
  *  @returns as ric_trajectory_run */
 ric_status lyapunov_course_run(lyapunov_course *course, double end, ric_run *run, ric_error *error);
 

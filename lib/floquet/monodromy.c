@@ -6,7 +6,7 @@
 
 #include "numeric/vector.h"
 
-/* Sets M to the unit matrix: the tangent vectors to begin with. */
+/* Sets M to the unit matrix: the initial tangent vectors. */
 static void set_unit(double *M, size_t size) {
   memset(M, 0, size * size * sizeof *M);
   for (size_t i = 0; i < size; i++)

@@ -1,4 +1,4 @@
-/* Multipliers of a matrix, by GSL, and of an even motion, by its block; the verdict of both. */
+/* Multipliers of a matrix, by GSL, and of an even motion, by its block; the verdict. */
 #include "multipliers.h"
 
 #include <complex.h>
@@ -14,13 +14,13 @@
 
 #include "ricochet/multipliers.h"
 
-/* A pair (mu, 1/mu) of multipliers and the one number that stands for it, alpha = (mu + 1/mu) / 2. */
+/* A pair (mu, 1/mu) of multipliers and its representative alpha = (mu + 1/mu) / 2. */
 
 static ric_complex plain(double complex z) {
   return (ric_complex){creal(z), cimag(z)};
 }
 
-/* alpha^2 - 1 as a product: close to 1 it keeps its digits. */
+/* alpha^2 - 1 as a product, without cancellation near 1. */
 static void real_pair(double alpha, ric_complex pair[2]) {
   double square = (alpha - 1) * (alpha + 1), root = sqrt(fabs(square));
   if (square <= 0) {
@@ -69,20 +69,20 @@ void multipliers_sort(ric_multipliers *m) {
   qsort(m->mu, m->count, sizeof *m->mu, in_order);
 }
 
-/* The nearest to 1 come first; which they are is a matter of distance alone. */
+/* The nearest to 1 come first, ordered by distance only. */
 static int by_distance_from_one(const void *a, const void *b) {
   double x = distance_from_one(*(const ric_complex *)a), y = distance_from_one(*(const ric_complex *)b);
   return (x > y) - (x < y);
 }
 
-/* What the multipliers that count say. */
+/* Result of the non-trivial multipliers. */
 typedef struct finding {
   const ric_complex *outermost; /* of largest modulus */
   const ric_complex *unstable;  /* of those outside by more than the band; NULL if none is */
   const ric_complex *at_one;    /* one that lies too close to 1; NULL if none does */
 } finding;
 
-/* Real multipliers that coincide, as symmetry makes them, get imaginary parts from rounding. */
+/* Rounding gives real multipliers that coincide by symmetry imaginary parts. */
 static bool is_real(const ric_complex *z, const ric_multiplier_options *o) {
   return fabs(z->im) <= o->multiplier_tol * fabs(z->re);
 }
@@ -145,7 +145,7 @@ static void decide(ric_multipliers *m, const finding *f, const ric_multiplier_op
   }
 }
 
-/* Farther from 1 than rounding splits a double 1, trivial multipliers are none. */
+/* A multiplier farther from 1, more than rounding splits a double 1, is not trivial. */
 static const double trivial_tol = 1e-3;
 
 static void evaluate_trivial(ric_multipliers *m, size_t trivial) {
@@ -154,7 +154,7 @@ static void evaluate_trivial(ric_multipliers *m, size_t trivial) {
     return;
   m->stable = RIC_UNDECIDED;
   snprintf(m->reason, sizeof m->reason,
-           "multiplier %.9g %+.3gi, taken for one that is 1 for any motion, lies %.3g from 1", z->re, z->im,
+           "multiplier %.9g %+.3gi, expected to be a trivial multiplier 1, lies %.3g from 1", z->re, z->im,
            distance_from_one(*z));
 }
 
@@ -167,14 +167,14 @@ static double log_determinant(const ric_multipliers *m) {
 
 void multipliers_judge(ric_multipliers *m, size_t trivial, const ric_multiplier_options *options) {
   ric_multiplier_options own = *options, *o = &own;
-  if (trivial < 2) /* no second pair can meet the double 1 */
+  if (trivial < 2) /* no second pair can collide with the double 1 */
     own.band_at_one = own.band;
   qsort(m->mu, m->count, sizeof *m->mu, by_distance_from_one);
   finding f = evaluate_multiplier(m, m->mu + trivial, m->count - trivial, o);
   decide(m, &f, o);
   evaluate_trivial(m, trivial);
   if (!f.outermost)
-    m->margin = 0; /* nothing besides those at 1 */
+    m->margin = 0; /* none besides those at 1 */
   multipliers_sort(m);
   m->largest = modulus(m->mu[0]);
   m->log_determinant = log_determinant(m);
@@ -195,7 +195,7 @@ void multipliers_judge_outside(ric_multipliers *m, size_t unlocated, size_t near
              near_one, o->band_at_one);
   } else if (unlocated > 0) {
     m->stable = RIC_UNDECIDED;
-    snprintf(m->reason, sizeof m->reason, "%zu multipliers are not told from the unit circle, within %.3g of it",
+    snprintf(m->reason, sizeof m->reason, "%zu multipliers within %.3g of the unit circle cannot be separated from it",
              unlocated, o->band);
   }
 }
@@ -244,7 +244,7 @@ static ric_status multiplier_matrix_check(const double *M, size_t dimension, siz
   return RIC_OK;
 }
 
-/* Eigenvalues of M + shift I, less the shift. */
+/* Eigenvalues of M + shift I, minus the shift. */
 static int eigenvalues_of_shifted(multiplier_work *w, const double *M, double shift) {
   size_t n = w->copy->size1;
   memcpy(w->copy->data, M, n * n * sizeof *M);
@@ -280,7 +280,7 @@ ric_status multiplier_work_find(multiplier_work *w, const double *M, size_t triv
   size_t n = w->copy->size1;
   RIC_TRY(multiplier_matrix_check(M, n, trivial, m, error));
   ric_multipliers_fail(m, "not computed");
-  /* GSL compares what it neglects with the diagonal beside it: where that is zero it may try in vain. */
+  /* GSL compares neglected entries with the neighbouring diagonal: if that is zero it may not converge. */
   if (eigenvalues_of_shifted(w, M, 0) != GSL_SUCCESS && eigenvalues_of_shifted(w, M, size_of(M, n)) != GSL_SUCCESS)
     return ric_fail(error, RIC_ENUMERIC, "eigenvalues of a matrix of size %zu: they do not converge", n);
   for (size_t i = 0; i < n; i++)
@@ -338,7 +338,7 @@ ric_status ric_multipliers_of_matrix(const double *M, size_t dimension, size_t t
   return status;
 }
 
-/* Rows of l W - l above it (over the largest entry of W) do not come from rounding. */
+/* Entries of l W - l above it (relative to the largest entry of W) are not rounding. */
 static const double defect_tol = 1e-6;
 
 void even_spectrum_clear(even_spectrum *e) {
@@ -374,7 +374,7 @@ ric_status even_spectrum_reserve(even_spectrum *e, size_t n, ric_error *error) {
   return ric_fail(error, RIC_ENOMEM, "no memory for the reduced matrix of %zu particles", n);
 }
 
-/* H W H with the reflection H that takes l to the first coordinate: its first row is (1, 0, ..., 0) up to rounding. */
+/* H W H with the reflection H that maps l to the first coordinate: its first row is (1, 0, ..., 0) up to rounding. */
 static void deflate(even_spectrum *e) {
   double tau = gsl_linalg_householder_transform(e->left);
   gsl_linalg_householder_hm(tau, e->left, e->block);

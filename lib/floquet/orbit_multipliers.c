@@ -15,9 +15,10 @@ ric_orbit_multiplier_options ric_orbit_multiplier_options_default(void) {
   return (ric_orbit_multiplier_options){.method = RIC_MULTIPLIERS_AUTO, .judge = ric_multiplier_options_default()};
 }
 
-/* Closure errors above it are no orbit's; those of strongly unstable ones grow by the largest multiplier. */
+/* With a larger closure error the state is not on an orbit; errors of strongly unstable orbits grow by the largest
+ * multiplier. */
 static const double closure_tol = 1e-6;
-/* Of an entry of M: a thousand times its rounding. */
+/* Relative to an entry of M: a thousand times its rounding. */
 static const double determinant_tol = 1e-12;
 
 static ric_multiplier_method method_for(const ric_orbit_multiplier_options *o, size_t n) {
@@ -84,7 +85,7 @@ static ric_status by_reduced(orbit_spectrum *s, const ric_chain *chain, const ri
   return RIC_OK;
 }
 
-/* The orbit is conservative: the determinant is 1, up to what rounding makes of the smallest multiplier. */
+/* The orbit is conservative: the determinant is 1, up to the rounding of the smallest multiplier. */
 static void check_determinant(ric_multipliers *m) {
   char reason[sizeof m->reason];
   double error = fabs(m->log_determinant), allowed = determinant_tol * (double)m->dimension * m->largest * m->largest;
@@ -94,7 +95,7 @@ static void check_determinant(ric_multipliers *m) {
   ric_multipliers_fail(m, reason);
 }
 
-/* Whether the run has followed the orbit. */
+/* Whether the run stayed on the orbit. */
 static bool follows(const ric_monodromy *run, const ric_orbit *orbit, ric_multipliers *m) {
   char reason[sizeof m->reason];
   if (run->outcome != RIC_RUN_COMPLETED)
@@ -114,7 +115,7 @@ static ric_status by_monodromy(ric_orbit_solver *solver, const ric_chain *chain,
   ric_trajectory_options options = ric_trajectory_options_default();
   ric_monodromy run;
   if (orbit->outcome == RIC_INADMISSIBLE) {
-    ric_multipliers_fail(m, "inadmissible: no event-driven run follows the orbit");
+    ric_multipliers_fail(m, "inadmissible: an event-driven run cannot follow the orbit");
     return RIC_OK;
   }
   double *M = malloc(m->dimension * m->dimension * sizeof *M);

@@ -146,8 +146,8 @@ static void place_impacts(reduced *r, const orbit_impacts *impacts) {
       r->impact_of[impacts->items[i].particle] = &impacts->items[i];
 }
 
-/* Row i of the block of P2 K2 times a flow: a displacement, or the speed of an impacting particle after its half kick,
- * reversed. K2 on the right leaves the columns of the block alone. */
+/* Row i of the block of P2 K2 times a flow: a displacement, or the speed of an impacting particle after its half jump,
+ * reversed. K2 on the right does not change the columns of the block. */
 static double row_entry(const reduced *r, const flow_kernel *f, const ric_chain *chain, size_t i, bool speed_column,
                         size_t j) {
   const orbit_impact *k = r->impact_of[i];

@@ -9,7 +9,7 @@
 #include "multipliers.h"
 #include "ricochet/orbit.h"
 
-/* What the impacts of an orbit do to the motions beside it.
+/* Saltation at the impacts of an orbit.
  *
  * The saltation matrix of an impact of particle k with restitution 1 acts on (q_k, v_k) alone (the chain has no
  * damping), as [[-1, 0], [s, -1]] with s = 2 a_k / v_k-, a_k the acceleration at the impact. With the velocity jump
@@ -32,7 +32,7 @@ typedef struct orbit_impacts {
 void orbit_impacts_clear(orbit_impacts *list);
 
 /** Reads the impacts of an orbit with a state.
- *  @param grazing_tol  relative to the largest displacement: impulses up to it have no saltation matrix
+ *  @param grazing_tol  relative to the largest displacement: smaller impulses have no saltation matrix
  *  @param grazing  set to the first impact with such an impulse, or to the number of impacts */
 ric_status orbit_impacts_find(orbit_impacts *list, const ric_chain *chain, const ric_pattern *pattern,
                               const ric_orbit *orbit, double grazing_tol, size_t *grazing, ric_error *error);
@@ -40,7 +40,7 @@ ric_status orbit_impacts_find(orbit_impacts *list, const ric_chain *chain, const
 /* Entries of the free flow of a chain over T and T/2, from kernels on its image ring.
  *
  * The flow over t is [[cos(W t), sin(W t) / W], [-W sin(W t), cos(W t)]] on (q, v), W^2 the stiffness matrix. Its
- * blocks are functions of the stiffness matrix, so n / 2 + 1 numbers each hold them. */
+ * blocks are functions of the stiffness matrix, each given by n / 2 + 1 numbers. */
 
 /** Kernels of one time. */
 typedef struct flow_kernel {
@@ -55,16 +55,16 @@ typedef struct flow_kernels {
 
 /* Multipliers of an even orbit from one n x n block.
  *
- * The saltation matrix of an impact is S = K P K with P = -1 on (q_k, v_k) and two half kicks K = [[1, 0], [-s/2, 1]].
+ * The saltation matrix of an impact is S = K P K with P = -1 on (q_k, v_k) and two half jumps K = [[1, 0], [-s/2, 1]].
  * With the free flow F over T/2, based in the middle of the impacts at t = 0, the monodromy matrix is
  *
  *   M = P2 K2 F (K1 P1 K1) F K2.
  *
- * Time reversal R = diag(1, -1) turns F and K into their inverses, so R' = P2 R turns M into its inverse, and
- * (M + M^-1) / 2 maps the states with R' x = x to themselves: displacements of the particles that do not hit at t = 0,
- * speeds of those that do. There it is the block W of M, with the eigenvalues alpha = (mu + 1/mu) / 2.
+ * Conjugation with the time reversal R = diag(1, -1) inverts F and K, so R' = P2 R inverts M, and (M + M^-1) / 2 maps
+ * the states with R' x = x to themselves: displacements of the particles that do not hit at t = 0, speeds of those that
+ * do. There it is the block W of M, with the eigenvalues alpha = (mu + 1/mu) / 2.
  *
- * Its eigenvalues, and what becomes of them: multipliers.h. */
+ * Its eigenvalues and the verdict: multipliers.h. */
 
 typedef struct reduced {
   size_t particles;
@@ -77,7 +77,7 @@ typedef struct reduced {
 void reduced_clear(reduced *r);
 
 /** Finds the spectrum; O(n^3).
- *  @returns RIC_ENOMEM, RIC_ENUMERIC when the eigenvalues do not converge */
+ *  @returns RIC_ENOMEM, RIC_ENUMERIC if the eigenvalues do not converge */
 ric_status reduced_compute(reduced *r, const ric_chain *chain, const orbit_impacts *impacts, const ric_orbit *orbit,
                            ric_error *error);
 

@@ -1,4 +1,4 @@
-/* The determinant behind the multipliers of large chains: its set-up for an orbit, and its values. */
+/* The determinant for the multipliers of large chains: set-up for an orbit, and evaluation. */
 #include "secular.h"
 
 #include <math.h>
@@ -6,7 +6,7 @@
 
 #include "numeric/constants.h"
 
-/* The set-up of the determinant for an orbit: modes, poles, room. */
+/* Set-up of the determinant for an orbit: modes, poles, memory. */
 
 static void free_matrices(secular *s) {
   if (s->symmetric)
@@ -86,7 +86,7 @@ double secular_bytes(const secular *s) {
   return (double)(s->capacity * sizeof *s->store + s->pole_capacity * sizeof *s->poles) + matrices;
 }
 
-/* Fills row `seen` of the shapes. @returns whether the mode is hidden: rounding leaves 1e-16 of a zero */
+/* Fills row `seen` of the shapes. @returns whether the mode is hidden: its entries are rounding, 1e-16 */
 static bool set_shape(secular *s, const ric_chain *chain, size_t mode, size_t seen) {
   double largest = 0, rounding = 1e-12 / sqrt((double)s->particles);
   for (size_t k = 0; k < s->impacts; k++) {
@@ -99,7 +99,7 @@ static bool set_shape(secular *s, const ric_chain *chain, size_t mode, size_t se
 
 static void set_coefficients(secular *s, size_t j, double omega, double x) {
   secular_modes *a = &s->modes;
-  double start = 0, half = 0; /* the orbit's impulses as the mode feels them */
+  double start = 0, half = 0; /* modal impulses of the orbit */
   for (size_t k = 0; k < s->impacts; k++) {
     double felt = a->shape[k * s->particles + j] * s->impact[k].impulse;
     *(s->impact[k].at_half ? &half : &start) += felt;
@@ -152,7 +152,7 @@ ric_status secular_prepare(secular *s, const ric_chain *chain, const orbit_impac
   return RIC_OK;
 }
 
-/* 1 / (alpha - cos wT), the difference taken from the nearer of 1 and -1, where both come close to one another. */
+/* 1 / (alpha - cos wT), with the difference computed from the nearer of 1 and -1, without cancellation. */
 static void set_resolvent(secular *s, double complex zeta) {
   double complex half = csinh(zeta / 2), other_half = ccosh(zeta / 2);
   bool right = creal(ccosh(zeta)) >= 0;
@@ -166,7 +166,7 @@ static void set_resolvent(secular *s, double complex zeta) {
   }
 }
 
-/* The three sums of a pair of impacts; beta = cosh(zeta / 2) times what its parity asks for. */
+/* The three sums of a pair of impacts; with the factor beta = cosh(zeta / 2) required by its parity. */
 static void sum_pair(secular *s, size_t k, size_t l, double complex beta) {
   const secular_modes *a = &s->modes;
   const double *first = a->shape + k * s->particles, *second = a->shape + l * s->particles;
@@ -221,8 +221,8 @@ static void set_entry(secular *s, size_t row, size_t column, double complex z) {
   s->matrix[row * 2 * s->impacts + column] = z;
 }
 
-/* N, with rows that carry the factor (-4)^m, its speed columns times kappa = sinh(zeta / 2) and its speed rows over it,
- * and the column of the largest impulse replaced by N w / (alpha - 1), w the jumps along the orbit. */
+/* N, with the factor (-4)^m in its rows, its speed columns times kappa = sinh(zeta / 2) and its speed rows over it, and
+ * the column of the largest impulse replaced by N w / (alpha - 1), w the jumps along the orbit. */
 static void set_matrix(secular *s, double complex zeta) {
   size_t m = s->impacts;
   double complex kappa = csinh(zeta / 2), square = kappa * kappa;
@@ -246,7 +246,7 @@ static double size_of(double complex z) {
   return fabs(creal(z)) + fabs(cimag(z));
 }
 
-/* Brings the largest entry of a column to the diagonal. @returns whether rows were exchanged */
+/* Moves the largest entry of a column to the diagonal. @returns whether rows were exchanged */
 static bool pivot(double complex *a, size_t size, size_t column) {
   size_t best = column;
   for (size_t i = column + 1; i < size; i++)
@@ -260,7 +260,7 @@ static bool pivot(double complex *a, size_t size, size_t column) {
   return best != column;
 }
 
-/* Product without the special cases of infinities that the language asks for. */
+/* Product without the special cases of infinities required by the C standard. */
 static inline double complex times(double complex a, double complex b) {
   return CMPLX(creal(a) * creal(b) - cimag(a) * cimag(b), creal(a) * cimag(b) + cimag(a) * creal(b));
 }
@@ -311,8 +311,8 @@ static void set_symmetric(secular *s, double angle) {
     }
 }
 
-/* The sign of det H is that of f = (alpha - 1) g, which is certain near 1, too: where the eigenvalues disagree with it,
- * the smallest one is in the noise. */
+/* The sign of det H is that of f = (alpha - 1) g, which is accurate near 1, too: if the eigenvalues disagree with it,
+ * the smallest one is noise. */
 size_t secular_negative(secular *s, double angle) {
   double complex value = secular_log(s, CMPLX(0, angle));
   bool odd = cos(cimag(value)) > 0;

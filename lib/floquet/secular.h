@@ -1,21 +1,22 @@
 /* The determinant whose zeros are the multipliers, in O(n m) memory: internal to the room.
  *
- * A motion beside the orbit with x(t + T) = mu x(t) is free between impacts; at each impact its displacement jumps by
- * some x_k and its velocity by some p_k. Modes respond to unit jumps that repeat with factors mu as
+ * A solution of the variational equation with x(t + T) = mu x(t) is free between impacts; at each impact its
+ * displacement jumps by some x_k and its velocity by some p_k. Modes respond to unit jumps that repeat with factors mu
+ * as
  *
  *   g(t) = (sin w(T - t) + mu sin w t) / (2 w (alpha - cos wT)),   alpha = (mu + 1/mu) / 2,   0 <= t <= T,
  *
- * and the saltation matrix says that at the impact the mean displacement is 0 and the mean velocity is -s_k x_k / 4.
- * These are 2m equations for 2m jumps, with the matrix N(mu) of sums over modes, and
+ * and by the saltation matrix the mean displacement at the impact is 0 and the mean velocity is -s_k x_k / 4. These are
+ * 2m equations for 2m jumps, with the matrix N(mu) of sums over modes, and
  *
  *   f(mu) = (-4)^m det N(mu) = prod_i (alpha - alpha_i) / prod_j (alpha - cos w_j T) = det(I - Y^T (mu - D)^-1 D X)
  *
  * (orbit_multipliers.h). With the impacts at T/2 scaled by sqrt(mu), f is a function of alpha alone. The variable here
- * is zeta = log mu, and alpha - 1 = 2 sinh^2(zeta / 2) keeps its digits.
+ * is zeta = log mu, and alpha - 1 = 2 sinh^2(zeta / 2) has no cancellation.
  *
  * The motion along the orbit is a zero for any orbit, alpha = 1 with x_k = p_k of the orbit. N times it has the factor
- * alpha - 1, which is divided out by hand: g(mu) = f(mu) / (alpha - 1) is computed without cancellation, and is the
- * function to look at near 1.
+ * alpha - 1, which is removed analytically: g(mu) = f(mu) / (alpha - 1) is computed without cancellation and used near
+ * 1.
  *
  * On the circle f is the determinant of a real symmetric matrix H; the number of its negative eigenvalues counts
  * multipliers (determinant.h). */
@@ -31,7 +32,8 @@
 /** A free mode on the circle: mu = exp(+- i angle). */
 typedef struct secular_pole {
   double angle;  /* in [0, pi] */
-  int signature; /* sign of sin wT: which of the two multipliers moves forward as the frequency grows */
+  int signature; /* sign of sin wT: Krein signature, the direction in which the multipliers move as the frequency
+                    increases */
   bool hidden;   /* its displacement vanishes at all impacts: a multiplier of the orbit, too, and no pole of f */
 } secular_pole;
 
@@ -62,8 +64,8 @@ typedef struct secular {
   gsl_vector *eigenvalues;
   gsl_eigen_symm_workspace *work;
   size_t evaluations;
-  ric_poll poll; /* asked at every evaluation */
-  bool stopped;  /* it asked for the end: all that follows is without meaning */
+  ric_poll poll; /* called at every evaluation */
+  bool stopped;  /* the callback has stopped the computation: later results are undefined */
 } secular;
 
 void secular_clear(secular *s);

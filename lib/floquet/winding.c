@@ -1,11 +1,11 @@
-/* Multipliers outside of the unit circle: counted by winding numbers, and found. */
+/* Multipliers outside the unit circle: counted by winding numbers, and located. */
 #include "winding.h"
 
 #include <math.h>
 
 #include "numeric/constants.h"
 
-/* Halvings of a step of length 1/2: 2^-40 is far below any distance that counts. */
+/* Bisections of a step of length 1/2: 2^-40 is far below all relevant distances. */
 enum { MOST_HALVINGS = 40 };
 
 /* Distance of zeta from the nearest pole of g, at +- i angle + 2 pi i k. */
@@ -31,7 +31,7 @@ static double complex change(double complex from, double complex to) {
   return CMPLX(creal(to) - creal(from), remainder(cimag(to) - cimag(from), 2 * pi));
 }
 
-/* Whether log g runs straight enough between three points for its phase not to turn unseen. */
+/* Whether log g is nearly linear between three points, so that no turn of its phase is missed. */
 static bool straight(double complex first, double complex second) {
   double quarter = pi / 4;
   return cabs(first) < quarter && cabs(second) < quarter && cabs(first - second) < quarter / 2;
@@ -49,7 +49,7 @@ static double phase(secular *s, double complex a, double complex log_a, double c
   return phase(s, a, log_a, middle, log_middle, halvings - 1) + phase(s, middle, log_middle, b, log_b, halvings - 1);
 }
 
-/** Phase of g along a straight line between two zeta; NaN when it meets a zero. */
+/** Phase of g along a straight line between two zeta; NaN if it passes through a zero. */
 static double winding_phase(secular *s, double complex from, double complex to) {
   double sum = 0;
   int steps = (int)ceil(cabs(to - from) / 0.5);
@@ -84,7 +84,8 @@ bool winding_box(secular *s, double complex low, double complex high, size_t *ze
   return whole(sum / (2 * pi), zeros);
 }
 
-/* In rectangles smaller than `small` zeros are looked for together; those smaller than `smallest` are not divided. */
+/* In rectangles smaller than `small` a cluster of zeros is located together; those smaller than `smallest` are not
+ * divided. */
 static const double small = 1e-2, smallest = 1e-8;
 
 /* Zeros of a variance below that of the rounding of log g, over the square of the circle's radius, coincide. */
@@ -115,7 +116,7 @@ static void put(found *x, double re, double im) {
     x->mu[x->count++] = (ric_complex){re, im};
 }
 
-/* The search covers a little more than the upper half plane; what it finds below is the conjugate of another one. */
+/* The search covers slightly more than the upper half plane; zeros below are conjugates of others. */
 static void accept(found *x, double complex zeta, size_t times) {
   double angle = cimag(zeta), size = exp(creal(zeta));
   for (size_t i = 0; i < times; i++)
@@ -152,12 +153,12 @@ static double circle_around(const box *b) {
   return 2 * cabs(b->high - b->low);
 }
 
-/* Points on the circle, and how far the sums over all and over every second one may differ: what lies outside the
- * circle enters by the power POINTS / 2 of its distance. */
+/* Points on the circle, and the tolerated difference of the sums over all and over every second one: zeros outside the
+ * circle contribute with the power POINTS / 2 of their distance. */
 enum { POINTS = 32 };
 static const double settled = 1e-9;
 
-/* Logarithms of g on the circle, less those of `count` zeros at its centre. @returns whether it has `count` zeros */
+/* Logarithms of g on the circle minus those of `count` zeros at its centre. @returns whether it has `count` zeros */
 static bool sample(secular *s, double complex centre, double radius, size_t count, double complex rest[POINTS]) {
   double argument = 0, began = 0;
   for (int i = 0; i <= POINTS; i++) {
@@ -199,7 +200,7 @@ static bool moments(secular *s, const box *b, size_t count, double complex *mean
 static bool accept_cluster(found *x, const box *b, size_t count) {
   double complex mean, variance;
   if (circle_around(b) > (creal(b->low) + creal(b->high)) / 2 || !moments(x->s, b, count, &mean, &variance))
-    return false; /* it would have poles in it, or other zeros */
+    return false; /* it would contain poles or other zeros */
   bool coincide = count == 1 || cabs(variance) < coincidence * circle_around(b) * circle_around(b);
   if (!coincide && count > 2 && cabs(b->high - b->low) > smallest)
     return false;
@@ -224,7 +225,7 @@ static void halves(const box *b, double part, box *first, box *second) {
   }
 }
 
-/* Divides a rectangle where no zero is on the line; the other half has the other zeros. */
+/* Divides a rectangle along a line without zeros; the other half has the other zeros. */
 static bool divide(found *x, const box *b, size_t count, box parts[2], size_t counts[2]) {
   static const double places[] = {0.4871, 0.5313, 0.4439, 0.5687, 0.4151, 0.5977};
   const size_t choices = sizeof places / sizeof *places;

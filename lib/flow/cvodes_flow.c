@@ -14,22 +14,22 @@
 #include "numeric/sundials_context.h"
 #include "ricochet/status.h"
 
-/* SUNDIALS CVODES behind a few calls: the one place that knows its interface.
+/* A thin layer over SUNDIALS CVODES: the only place that uses its interface.
  *
- * Adams' formulas of orders 1 to 12 with variable steps; the implicit equations by fixed-point iteration. The local
- * error of a step, in root mean square over the numbers of a state, is kept below `tolerance` times the size of the
- * state, itself in root mean square. Functions return NULL or what went wrong as a static text. */
+ * Adams formulas of orders 1 to 12 with variable steps; fixed-point iteration for the implicit equations. The local
+ * error of a step, in root mean square over the numbers of a state, is below `tolerance` times the root mean square of
+ * the state. Functions return NULL or a static text that describes the failure. */
 
 enum { CVODES_ORDER = 12 };
 
 /** Tangent vectors in CVODES' forward sensitivity analysis (staggered, under the error control of the state). */
 typedef struct cvodes_tangents {
-  size_t columns;   /* there is room for, and CVODES knows of; 0: none */
-  bool active;      /* they take part */
+  size_t columns;   /* allocated, also in CVODES; 0: none */
+  bool active;      /* they are integrated */
   N_Vector *vector; /* [columns] */
   SUNNonlinearSolver iteration;
   double *absolute;     /* [columns] tolerances */
-  double **d, **d_rate; /* [columns] the numbers of vectors, for the callback */
+  double **d, **d_rate; /* [columns] data of the vectors, for the callback */
 } cvodes_tangents;
 
 typedef struct cvodes_solver {
@@ -38,8 +38,7 @@ typedef struct cvodes_solver {
   SUNNonlinearSolver iteration;
   N_Vector y, row;
   size_t size;
-  double
-      origin; /* of the time that CVODES sees: that of the last restart, so that early steps are not lost in rounding */
+  double origin; /* of the time of CVODES: the time of the last restart, so that early steps are not lost in rounding */
   double begin, end; /* of the last step, from the origin */
   double tolerance;
   /** Rates of the state [size]. */
@@ -48,17 +47,18 @@ typedef struct cvodes_solver {
   const char *(*tangent_rate)(void *user, double t, const double *y, double *const *d, double *const *d_rate);
   void *user;
   cvodes_tangents tangents;
-  const char *trouble; /* of the last call of `rate` that failed, and when */
+  const char *trouble; /* reason and time of the last call of `rate` that failed */
   double trouble_time;
 } cvodes_solver;
 
-/* States below it count as of this size: a state passes through zero, and rests there, without steps that shrink. */
+/* Smaller states count as this size: a state can pass through zero, or rest there, without ever smaller steps. */
 static const double least_size = 1e-3;
 
-/* States beyond it blow up: their squares soon leave the range of numbers. */
+/* States beyond it blow up: their squares would soon overflow. */
 static const double greatest_size = 1e100;
 
-/* Steps grow as soon as they may grow by it; CVODES would wait for 1.5, and needs half as many evaluations again. */
+/* Steps grow as soon as they can grow by this factor; with the default of CVODES, 1.5, 50 % more evaluations are
+ * needed. */
 static const double least_growth = 1.05;
 
 static int silence(void *memory) {
@@ -83,7 +83,7 @@ static double root_mean_square(const double *y, size_t size) {
 
 static int rate_of_state(double t, N_Vector y, N_Vector y_rate, void *user) {
   cvodes_solver *s = user;
-  if (s->trouble) /* whatever CVODES tries after a failure */
+  if (s->trouble) /* CVODES may call again after a failure */
     return -1;
   const char *trouble = s->rate(s->user, s->origin + t, N_VGetArrayPointer(y), N_VGetArrayPointer(y_rate));
   if (!trouble)
@@ -158,7 +158,7 @@ static ric_status cvodes_solver_init(cvodes_solver *s, double longest_step, ric_
   return ric_fail(error, RIC_ENOMEM, "no memory for CVODES with %zu numbers", s->size);
 }
 
-/** Tells CVODES of the tangent vectors, after a restart. */
+/** Passes the tangent vectors to CVODES, after a restart. */
 static const char *cvodes_tangents_restart(cvodes_solver *s) {
   cvodes_tangents *d = &s->tangents;
   for (size_t k = 0; k < d->columns; k++)
@@ -168,7 +168,7 @@ static const char *cvodes_tangents_restart(cvodes_solver *s) {
   return failed ? "CVODES refuses to start with tangent vectors" : NULL;
 }
 
-/** Forgets the history. */
+/** Discards the history. */
 static const char *cvodes_solver_restart(cvodes_solver *s, double t) {
   s->origin = t;
   if (CVodeReInit(s->memory, 0, s->y))
@@ -180,15 +180,15 @@ static const char *text_of(int code) {
   switch (code) {
   case CV_ERR_FAILURE:
   case CV_CONV_FAILURE:
-    return "steps shrink to nothing: the motion blows up, or its forces jump";
+    return "steps become too short: the motion blows up, or its forces are discontinuous";
   case CV_TOO_MUCH_ACC:
-    return "the tolerance is beyond the precision of numbers";
+    return "the tolerance is below the precision of double numbers";
   default:
     return "CVODES gave up";
   }
 }
 
-/** One step towards `stop`, and not beyond. @param t  set to the time after it; `stop` itself when it was reached */
+/** One step towards `stop`, and not beyond. @param t  set to the time after it; `stop` itself if it was reached */
 static const char *cvodes_solver_step(cvodes_solver *s, double stop, double *t) {
   double end;
   s->trouble = NULL;
@@ -197,10 +197,11 @@ static const char *cvodes_solver_step(cvodes_solver *s, double stop, double *t) 
   int code = CVodeSetStopTime(s->memory, stop - s->origin);
   if (code == CV_SUCCESS)
     code = CVode(s->memory, stop - s->origin, s->y, &end, CV_ONE_STEP);
-  if (code < 0 || s->trouble) /* CVODES may get past a failure with a shorter step; a callback that fails is the end */
+  if (code < 0 ||
+      s->trouble) /* CVODES may recover from a failure with a shorter step; here a failed callback is final */
     return s->trouble ? s->trouble : text_of(code);
   if (end == s->begin)
-    return "steps shrink to nothing: the motion blows up, or its forces jump";
+    return "steps become too short: the motion blows up, or its forces are discontinuous";
   if (!(root_mean_square(cvodes_solver_state(s), s->size) < greatest_size))
     return "the motion blows up";
   s->end = end;
@@ -216,7 +217,7 @@ static double cvodes_solver_span(const cvodes_solver *s) {
   return fmax(fabs(last), fabs(next));
 }
 
-/** The state on the last step as a polynomial in [0, 1], coef [CVODES_ORDER + 1][size]; its degree, -1 when there is
+/** The state on the last step as a polynomial in [0, 1], coef [CVODES_ORDER + 1][size]; its degree, -1 if there is
  *  none. */
 static int cvodes_solver_polynomial(cvodes_solver *s, double *coef) {
   int degree = 0;
@@ -279,7 +280,7 @@ static int set_up_sensitivities(cvodes_solver *s) {
   return d->iteration ? CVodeSetNonlinearSolverSensStg(s->memory, d->iteration) : -1;
 }
 
-/** Makes room for tangent vectors; 0: none any more, whose room stays for as many again. A restart must follow. */
+/** Makes room for tangent vectors; 0 removes them but keeps the memory. A restart must follow. */
 static ric_status cvodes_solver_carry(cvodes_solver *s, size_t columns, ric_error *error) {
   s->tangents.active = columns > 0;
   if (columns == 0 && s->tangents.columns > 0)
@@ -298,7 +299,7 @@ static ric_status cvodes_solver_carry(cvodes_solver *s, size_t columns, ric_erro
 /** Sets the tangent vectors to those at a position of the last step, 0 <= x <= 1. */
 static const char *cvodes_tangents_at(cvodes_solver *s, double x) {
   double t = x == 1 ? s->end : s->begin + x * (s->end - s->begin);
-  return CVodeGetSensDky(s->memory, t, 0, s->tangents.vector) ? "CVODES gives no tangent vectors for its step" : NULL;
+  return CVodeGetSensDky(s->memory, t, 0, s->tangents.vector) ? "CVODES has no tangent vectors for its step" : NULL;
 }
 
 /* The flow of CVODES: for every system, on the state (q, u). */
@@ -307,14 +308,14 @@ typedef struct cvodes_flow {
   ric_flow base;
   cvodes_solver solver;
   int direction; /* of time since the last restart */
-  bool restart;  /* the solver knows nothing of the present state */
-  bool whole;    /* the solver stands at the end of the step */
+  bool restart;  /* the solver does not have the current state */
+  bool whole;    /* the solver is at the end of the step */
   bool callback_failed;
   double *coef; /* [CVODES_ORDER + 1][n + m] of the step */
   int degree;
-  double *work;        /* of system_tangent, and d and d_rate; NULL: no tangent vectors have been carried */
-  tangents d, d_rate;  /* [n + m][columns] work; d_rate: on a step lost in the rounding of time, the rates there */
-  const char *trouble; /* of the last transport, for the next step to tell */
+  double *work;        /* of system_tangent, and d and d_rate; NULL: there have been no tangent vectors */
+  tangents d, d_rate;  /* [n + m][columns] work; d_rate: the rates, on a step lost in the rounding of time */
+  const char *trouble; /* of the last transport, reported by the next step */
 } cvodes_flow;
 
 static const char *rate(void *user, double t, const double *y, double *y_rate) {
@@ -330,7 +331,7 @@ static const char *rate(void *user, double t, const double *y, double *y_rate) {
   return trouble;
 }
 
-/* The tangent vectors of CVODES, one after the other, to and from those of the library, side by side. */
+/* Converts tangent vectors between CVODES (one after another) and the library (interleaved). */
 static void gather(double *const *columns, size_t size, const tangents *d) {
   for (size_t i = 0; i < size; i++)
     for (size_t k = 0; k < d->columns; k++)
@@ -391,7 +392,7 @@ static ric_status start(ric_flow *flow, ric_error *error) {
   return flow->tangent.columns == 0 ? cvodes_solver_carry(&f->solver, 0, error) : RIC_OK;
 }
 
-/* The solver at the flow's state, when it is not there yet or time is to turn round. */
+/* Restarts the solver at the flow's state if it has another one or the direction of time changes. */
 static const char *synchronise_solver(cvodes_flow *f, double stop) {
   ric_flow *flow = &f->base;
   size_t n = flow->system->coordinates, m = flow->system->speeds;
@@ -409,7 +410,7 @@ static const char *synchronise_solver(cvodes_flow *f, double stop) {
   return cvodes_solver_restart(&f->solver, flow->time);
 }
 
-/* A way to `stop` that is lost in the rounding of time: straight on. */
+/* An interval to `stop` that is lost in the rounding of time: a linear step. */
 static const char *step_straight(cvodes_flow *f, double stop) {
   ric_flow *flow = &f->base;
   size_t n = flow->system->coordinates, m = flow->system->speeds;
@@ -439,7 +440,7 @@ static const char *advance_solver(cvodes_flow *f, double stop) {
     return trouble;
   f->degree = cvodes_solver_polynomial(&f->solver, f->coef);
   if (f->degree < 0)
-    return "CVODES gives no polynomial for its step";
+    return "CVODES has no polynomial for its step";
   memcpy(f->coef, flow->q, n * sizeof *flow->q); /* equal up to rounding: pieces join exactly */
   memcpy(f->coef + n, flow->u, m * sizeof *flow->u);
   flow->length = f->solver.end - f->solver.begin;

@@ -110,7 +110,7 @@ ric_status ric_flow_start(ric_flow *flow, double t, const double *q, const doubl
   return flow_restart(flow, error);
 }
 
-/* Room for tangents, in one block, which stays when there are fewer. */
+/* Makes room for tangents in one block, which is kept if there are fewer. */
 static ric_status reserve_tangents(ric_flow *flow, size_t columns, ric_error *error) {
   size_t n = flow->system->coordinates, m = flow->system->speeds;
   tangents *d = &flow->tangent;
@@ -141,7 +141,7 @@ ric_status ric_flow_carry(ric_flow *flow, size_t columns, const double *dq, cons
     memcpy(flow->tangent.u, du, m * columns * sizeof *du);
   ric_status status = flow->method->carry(flow, error);
   if (status != RIC_OK) {
-    flow->tangent.columns = 0; /* none are carried */
+    flow->tangent.columns = 0; /* there are none */
     return status;
   }
   return flow_restart(flow, error);

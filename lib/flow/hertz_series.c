@@ -2,14 +2,14 @@
 
 #include <math.h>
 
-/* A contact acts from that part of the way in the step without its force. */
+/* A contact acts from this fraction of the step without its force on. */
 static const double begun_share = 0.5;
 
 double hertz_series_next(hertz_series *s, int j, double u) {
   s->u[j] = u;
   if (j == 0)
     return s->p[0] = u * sqrt(u);
-  enum { LANES = 4 }; /* sums side by side */
+  enum { LANES = 4 }; /* partial sums in SIMD lanes */
   double sum[LANES] = {0};
   int i = 1;
   for (; i + LANES <= j + 1; i += LANES)
@@ -41,8 +41,8 @@ double hertz_series_nearest_zero(const hertz_series *s) {
   return s->u[0] / (fabs(s->u[1]) + sqrt(s->u[0] * fabs(s->u[2]))); /* u_1 x + u_2 x^2 is below u_0 there */
 }
 
-/* Longest step from the point of contact on which leaving the force out changes the gap rate by less than the
- * tolerance: k (w h)^{3/2} h / m <= tolerance w with w = |u'| + |u''| h. */
+/* Longest step from the onset of contact on which omitting the force changes the gap rate by less than the tolerance: k
+ * (w h)^{3/2} h / m <= tolerance w with w = |u'| + |u''| h. */
 static double negligible_step(const hertz_contact *c, double tolerance, double natural, double *w) {
   double h = 1e-3 * natural, before = 0;
   *w = fabs(c->rate);

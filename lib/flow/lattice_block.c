@@ -5,11 +5,11 @@
 
 #include "numeric/vectorised.h"
 
-/** Below this divisor a rounded reciprocal would change the size of a mode by the same 1e-17 at every step, which adds
- *  up; rounding of a quotient depends on the motion and does not. Later coefficients are too small to matter. */
+/** Below this divisor a rounded reciprocal would change the amplitude of a mode by the same 1e-17 at every step, which
+ *  accumulates; the rounding of a quotient depends on the motion and does not. Later coefficients are negligible. */
 enum { LAST_DIVIDED = 56 };
 
-/* Columns that level `level` has lost at each side of a block with a halo. */
+/* Columns at each side of a block with a halo that are invalid at level `level`. */
 RIC_INLINE size_t lost(unsigned terms, int level) {
   if (level < 2)
     return 0;
@@ -32,7 +32,7 @@ RIC_INLINE void linear_level(const double *restrict c, double *restrict next, co
       next[i] = scale * (own[i] * c[i] + (left[i] * c[i - 1] + right[i] * c[i + 1]));
 }
 
-/* The same stencil added to what is in `sum`. */
+/* The same stencil added to `sum`. */
 RIC_INLINE void add_stencil(const double *restrict c, double *restrict sum, const double *restrict own,
                             const double *restrict left, const double *restrict right, size_t low, size_t high,
                             double scale) {
@@ -138,12 +138,12 @@ RIC_VECTORISED static void raise_levels(lattice_block *b, double h, const double
   }
 }
 
-/* The variants' own names would be exported if they were not static. */
+/* The variants of a public symbol would be exported, too, so they are static. */
 void lattice_block_raise(lattice_block *block, double h, const double *cosine, const double *sine) {
   raise_levels(block, h, cosine, sine);
 }
 
-enum { NARROW = 4 /* particles for which half of a row does */ };
+enum { NARROW = 4 /* particles for which half of a row suffices */ };
 
 bool lattice_few_takes(size_t count, unsigned terms) {
   return count <= (terms & (BLOCK_SITE_NONLINEAR | BLOCK_LINK_NONLINEAR) ? FEW : NARROW);
@@ -232,7 +232,7 @@ void lattice_few_load(lattice_few *few, const lattice_block *b) {
 
 /* --- recurrence --------------------------------------------------------------------------------------------------- */
 
-/* Coefficients j and j + 1 of a series, of springs side by side. */
+/* Coefficients j and j + 1 of a series, springs in SIMD lanes. */
 typedef struct few_pair {
   ric_lanes low, high;
 } few_pair;
@@ -255,8 +255,8 @@ RIC_INLINE few_pair products(const ric_lanes *x, const ric_lanes *y, int j, int 
   return (few_pair){odd.low + even.low, odd.high + even.high};
 }
 
-/* Coefficients of x^2, j even: each product of two different factors once. The newest factors come last here and below,
- * so that little waits for them. */
+/* Coefficients of x^2, j even: each product of two different factors once. Here and below the newest factors come last,
+ * to shorten the chain of dependences. */
 RIC_INLINE few_pair square_of(const ric_lanes *x, const few_pair *newest, int j) {
   int half = j / 2;
   ric_lanes middle = x[half], twice = 2 * x[0];
@@ -421,7 +421,7 @@ RIC_VECTORISED static void raise(lattice_few *few, lattice_block *b, double h, c
     raise_pairs(few, b, h, cosine, sine, FEW_VECTORS);
 }
 
-/* The variants' own names would be exported if they were not static. */
+/* The variants of a public symbol would be exported, too, so they are static. */
 void lattice_few_raise(lattice_few *few, lattice_block *b, double h, const double *cosine, const double *sine) {
   raise(few, b, h, cosine, sine);
 }

@@ -19,8 +19,8 @@
  * products for squares and cubes, the series of cosine and sine for the forcing, and that of a Hertz contact
  * (hertz_series.h).
  *
- * A block knows nothing of lattices: its columns carry rows of constants. Columns of zeros are walls, an inverse mass
- * of zero holds a column where it is. */
+ * A block does not depend on lattices: its columns have rows of constants. Columns of zeros are walls; an inverse mass
+ * of zero holds a column in place. */
 
 /** Constants of a column. Link constants belong to the link on its left. */
 typedef enum block_row {
@@ -40,7 +40,7 @@ typedef enum block_row {
   BLOCK_ROWS
 } block_row;
 
-/** What a block has beyond linear springs. */
+/** Terms of a block beyond linear springs. */
 enum { BLOCK_DAMPED = 1, BLOCK_LINK_DAMPED = 2, BLOCK_SITE_NONLINEAR = 4, BLOCK_LINK_NONLINEAR = 8, BLOCK_FORCED = 16 };
 
 /** A pressed Hertz contact of a column. */
@@ -63,10 +63,10 @@ typedef struct lattice_block {
   size_t stride;           /* columns allocated */
   size_t ghosts;           /* columns before the first particle and after the last */
   size_t count;            /* particles */
-  bool whole;              /* the whole chain: one ghost at each side, no level lost */
+  bool whole;              /* the whole chain: one ghost at each side, no column becomes invalid */
   bool ring;               /* and its ghosts are the particles of the other end */
   double *c;               /* [order + 1][stride] */
-  double *row[BLOCK_ROWS]; /* [stride], NULL where the terms have no use for them */
+  double *row[BLOCK_ROWS]; /* [stride], NULL if the terms do not use them */
   double *square;          /* [order + 1][stride] squares of c */
   double *extension;       /* [order + 1][stride] c minus that of the column to the left */
   double *extension_square;
@@ -74,7 +74,7 @@ typedef struct lattice_block {
   block_presses presses;
 } lattice_block;
 
-/** Columns at each side that a step of this order uses up when they are not the end of a chain. */
+/** Columns at each side that become invalid in a step of this order, unless they are the end of a chain. */
 size_t lattice_block_halo(int order, unsigned terms);
 
 /** Sets the ghosts of a level of a whole ring to the particles of its other end. */
@@ -86,22 +86,22 @@ static inline void lattice_block_close_ring(lattice_block *block, int level) {
   }
 }
 
-/** Fills c_2 ... c_order from c_0 and c_1 (velocity times h); ghosts and the starts of the presses are given.
+/** Fills c_2 ... c_order from c_0 and c_1 (velocity times h); ghosts and initial penetrations are given.
  *  @param cosine, sine  [order + 1] series of the forcing's cosine and sine */
 void lattice_block_raise(lattice_block *block, double h, const double *cosine, const double *sine);
 
 /* The Taylor recurrence of a few particles.
  *
- * Where a block is the whole of a lattice of up to FEW particles there is nothing to gain from loops over columns
- * (lattice_block.h). Here the system is a dense one, and its nonlinear springs, which take nearly all of the time, are
- * lanes side by side; linear ones take none. With the extension x_s of spring s,
+ * For a whole lattice of up to FEW particles loops over columns (lattice_block.h) are inefficient. Here the system is
+ * dense, and its nonlinear springs, which dominate the cost, are in SIMD lanes; linear springs cost nothing extra. With
+ * the extension x_s of spring s,
  *
  *   c'' = A c + B c' + forcing - sum_s P_s (a_s x_s^2 + b_s x_s^3),
  *
  * level j + 2 follows from the levels up to j, and without dampers level j + 3 from those up to j + 1: two levels are
- * made at a time, so that the sums of one hide how long those of the other take. Without nonlinear springs what takes
- * time is that a level waits for the one before: all that does not depend on it is done beside, and what follows from
- * the length of the step alone once for all steps of that length. */
+ * computed at a time, which hides the latency of their sums. Without nonlinear springs the latency from level to level
+ * dominates: everything independent of the previous level is computed in parallel, and everything that depends on the
+ * step length only is computed once for all steps of that length. */
 
 enum {
   FEW = 8,
@@ -110,7 +110,7 @@ enum {
   FEW_VECTORS = FEW / RIC_LANES
 };
 
-/** Springs side by side. */
+/** Springs in SIMD lanes. */
 typedef struct few_springs {
   size_t count;
   ric_lanes quadratic, cubic;
@@ -119,12 +119,12 @@ typedef struct few_springs {
   ric_lanes x[FEW_LEVELS], square[FEW_LEVELS];
 } few_springs;
 
-/** Column by column: what all particles feel of one. */
+/** Column by column: the action of one particle on all. */
 typedef ric_lanes few_matrix[FEW][FEW_VECTORS];
 
-/** What makes level j + 2 of linear particles in a step of length h, (j + 1) (j + 2) beside: h^2 times accelerations by
- *  level j, and h (j + 1) times those by level j + 1. Where a reciprocal may be rounded (lattice_block.h), the divisor
- * is in them, and 1 beside. */
+/** Matrices for level j + 2 of linear particles in a step of length h, with the divisor (j + 1) (j + 2) separate: h^2
+ *  times accelerations by level j, and h (j + 1) times those by level j + 1. Where a reciprocal may be rounded
+ *  (lattice_block.h), the matrices include the divisor, and 1 is separate. */
 typedef struct few_scales {
   double h;
   double low[FEW_LEVELS], high[FEW_LEVELS], divisor[FEW_LEVELS];
@@ -137,14 +137,14 @@ typedef struct lattice_few {
   few_springs group[FEW_GROUPS];
 } lattice_few;
 
-/** Whether blocks of that many particles, with these terms, are for lattice_few when they are a whole lattice: all of
- * up to FEW but for linear ones too large for a dense matrix to be worth it. */
+/** Whether lattice_few treats blocks of that many particles with these terms if they are a whole lattice: all up to
+ * FEW, except linear ones for which a dense matrix does not pay. */
 bool lattice_few_takes(size_t count, unsigned terms);
 
-/** Columns that levels of such a block have at least: ghosts, and particles that are not there. */
+/** Least number of columns of such a block: ghosts, and padding up to FEW particles. */
 size_t lattice_few_columns(size_t count);
 
-/** Takes over the rows of the block. */
+/** Copies the rows of the block. */
 void lattice_few_load(lattice_few *few, const lattice_block *block);
 
 /** lattice_block_raise for such a block. */

@@ -1,4 +1,4 @@
-/* The Taylor flow of lattices: its life, its pieces and states, and the contacts that act in a step. */
+/* The Taylor flow of lattices: creation, pieces and states, and the contacts that act in a step. */
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -16,24 +16,24 @@ typedef struct lattice_flow {
   ric_flow base;
   taylor_stepper stepper;
   const ric_lattice *lattice;   /* the system's */
-  lattice_series *series;       /* of the piece that was asked for last */
-  lattice_series *aside;        /* of the neighbourhood of one particle; NULL with one piece */
-  size_t block;                 /* particles of a piece, the last may have fewer */
+  lattice_series *series;       /* of the piece requested last */
+  lattice_series *aside;        /* of the neighbourhood of one particle; NULL if there is one piece */
+  size_t block;                 /* particles of a piece; the last may have fewer */
   size_t made;                  /* piece that `series` holds, SIZE_MAX: none */
   size_t ended;                 /* the first pieces have their state at the end of the step in q_next, u_next */
   double *q_next, *u_next;      /* [n] */
-  lattice_variation *variation; /* NULL until tangent vectors are carried */
+  lattice_variation *variation; /* NULL until there are tangent vectors */
 
   /* Contacts, each list in order of coordinates. */
   size_t *held;           /* [held_count], of at most [obstacles] */
   lattice_press *pressed; /* [pressed_count], of at most [compliant obstacles] */
   lattice_press *acting;  /* [acting_count] those of `pressed` whose force has a series at the start of this step */
   size_t held_count, pressed_count, acting_count;
-  bool contacts_changed; /* since `series` was told */
+  bool contacts_changed; /* since the contacts of `series` were set */
   bool aside_stale;
 } lattice_flow;
 
-/* Contacts of the Taylor flow of a lattice: which act in a step, and the force of those that hold. */
+/* Contacts of the Taylor flow of a lattice: which act in a step, and the forces of held ones. */
 
 static bool put_held(lattice_flow *f, size_t coordinate) {
   size_t at = f->held_count;
@@ -72,7 +72,7 @@ static void lattice_flow_list_contacts(lattice_flow *f) {
   held_changed |= f->held_count != held_before;
   pressed_changed |= f->pressed_count != pressed_before;
   f->contacts_changed |= held_changed || pressed_changed;
-  if (pressed_changed) /* steps near the branch points of Hertz's law say nothing about those elsewhere */
+  if (pressed_changed) /* steps near the branch points of Hertz's law do not predict those elsewhere */
     f->stepper.trial = taylor_stepper_natural(&f->stepper);
 }
 
@@ -86,10 +86,10 @@ static bool acts(const lattice_flow *f, const lattice_press *p, int direction, d
   return hertz_acts(&c, f->base.options.tolerance, taylor_stepper_natural(&f->stepper), taylor_step_least(t), limit);
 }
 
-/** Sorts out which pressed contacts act. Those that have only just closed, or are about to open, have no series; their
- *  force is negligible on a short step and left out.
- *  @param direction  +1 or -1, the sense of time
- *  @param limit  set to the longest step with that force left out, INFINITY when all act */
+/** Decides which pressed contacts act. Those that have just closed, or are about to open, have no series; their force
+ *  is negligible on a short step and omitted.
+ *  @param direction  +1 or -1, the direction of time
+ *  @param limit  set to the longest step with that force omitted, INFINITY if all act */
 static ric_status lattice_flow_take_contacts(lattice_flow *f, int direction, double *limit, ric_error *error) {
   size_t before = f->acting_count, count = 0;
   bool changed = f->contacts_changed;
@@ -109,7 +109,7 @@ static ric_status lattice_flow_take_contacts(lattice_flow *f, int direction, dou
   return RIC_OK;
 }
 
-/** Whether a pressed contact takes part in this step. */
+/** Whether a pressed contact acts in this step. */
 static bool lattice_flow_acts(const lattice_flow *f, const lattice_press *p) {
   for (size_t k = 0; k < f->acting_count; k++)
     if (same_press(&f->acting[k], p))
@@ -117,7 +117,7 @@ static bool lattice_flow_acts(const lattice_flow *f, const lattice_press *p) {
   return false;
 }
 
-/* Force of Hertz contacts on a coordinate that stays where it is. */
+/* Force of Hertz contacts on a held coordinate. */
 static double constant_push(const lattice_flow *f, size_t coordinate) {
   double force = 0;
   for (size_t k = 0; k < f->pressed_count; k++) {
@@ -128,7 +128,7 @@ static double constant_push(const lattice_flow *f, size_t coordinate) {
   return force;
 }
 
-/* A segment of a particle and its neighbours, beside the pieces. */
+/* A segment of a particle and its neighbours, separate from the pieces. */
 static bool make_aside(lattice_flow *f, size_t particle) {
   size_t n = f->lattice->particles;
   bool ring = f->lattice->ends == RIC_ENDS_PERIODIC;
@@ -158,7 +158,7 @@ static int lattice_flow_reaction(ric_flow *flow, size_t obstacle, double *c) {
   return degree;
 }
 
-/* The Taylor flow of lattices: its life, its pieces and its states. */
+/* The Taylor flow of lattices: creation, pieces and states. */
 
 static lattice_flow *self(ric_flow *flow) {
   return (lattice_flow *)(void *)flow;
@@ -173,13 +173,13 @@ static ric_status start(ric_flow *flow, ric_error *error) {
   return RIC_OK;
 }
 
-/* Puts a piece of a step of the given length into the workspace, with its end state where that comes cheap. */
+/* Computes a piece of a step of the given length in the workspace, with its end state if that is cheap. */
 static ric_segment make(lattice_flow *f, size_t index, double length) {
   size_t first = index * f->block, rest = f->base.system->coordinates - first;
   ric_segment s = lattice_series_segment(f->series, f->base.q, f->base.u, f->base.time, length, first,
                                          rest < f->block ? rest : f->block);
   f->made = index;
-  if (f->base.pieces > 1 && f->ended == index) { /* while it is in the cache: most steps are accepted whole */
+  if (f->base.pieces > 1 && f->ended == index) { /* while it is in the cache: most steps are accepted entirely */
     ric_segment_state(&s, 1, f->q_next + first, f->u_next + first);
     f->ended++;
   }
@@ -191,14 +191,14 @@ static ric_segment piece(ric_flow *flow, size_t index) {
   return f->made == index ? lattice_series_last(f->series) : make(f, index, flow->length);
 }
 
-/* A linear motion grows by less than exp(2.2) per coefficient in a step of the bound: the start says it all. */
+/* A linear motion grows by less than exp(2.2) per coefficient in a step of the bound: the start suffices. */
 static taylor_decay evaluate_start(const lattice_flow *f, double length) {
   double size = taylor_largest(f->base.q, f->lattice->particles);
   size += fabs(length) * taylor_largest(f->base.u, f->lattice->particles);
   return (taylor_decay){.change = size < 1e290 ? size : NAN, .nearest_zero = INFINITY};
 }
 
-/* Series of all pieces. Steps of a linear lattice within the bound leave them until they are asked for. */
+/* Series of all pieces. In steps of a linear lattice within the bound they are computed on request. */
 static taylor_decay expand(ric_flow *flow, double length) {
   lattice_flow *f = self(flow);
   f->made = SIZE_MAX;
@@ -264,7 +264,7 @@ static double coordinate_at(ric_flow *flow, size_t i, double x) {
   return q;
 }
 
-/* What contacts do to the tangent vectors whose force was left out of the step. */
+/* Impulsive jumps of the tangent vectors by contacts whose force was omitted from the step. */
 static void apply_omitted_forces(ric_flow *flow, const lattice_press *p, double x) {
   const lattice_flow *f = self(flow);
   size_t i = p->coordinate, columns = flow->tangent.columns;
@@ -304,7 +304,7 @@ static void destroy(ric_flow *flow) {
   free(f);
 }
 
-/* Gives a series the terms of the lattice; one that has them stays. */
+/* Creates a series with the terms of the lattice, unless it has them. */
 static ric_status fit(const lattice_flow *f, size_t block, lattice_series **series, ric_error *error) {
   lattice_series *made = NULL;
   if (*series && lattice_series_fits(*series, f->lattice))
@@ -342,7 +342,7 @@ static bool spring_is_passive(const ric_spring *s) {
   return s->linear >= 0 && s->damping >= 0;
 }
 
-/* Whether all springs and links are of a sort. */
+/* Whether all springs and links have a property. */
 static bool all_springs(const ric_lattice *l, bool (*is)(const ric_spring *spring)) {
   bool all = true;
   for (size_t i = 0; i < (l->on_sites ? l->particles : 1); i++)
@@ -378,7 +378,7 @@ static ric_status lattice_begin(ric_flow *flow, bool renewed, ric_error *error) 
   plan(f);
   f->contacts_changed = true; /* and with them the rows of the series */
   if (f->variation && !lattice_variation_renew(f->variation))
-    lattice_variation_destroy(&f->variation); /* made again for the next tangent vectors */
+    lattice_variation_destroy(&f->variation); /* created again for the next tangent vectors */
   return fit_series(f, error);
 }
 

@@ -1,25 +1,24 @@
-/* Tangent vectors of a lattice through a step, some of them side by side: internal to lattice_variation.c, which
+/* Propagation of tangent vectors of a lattice through a step in SIMD lanes: internal to lattice_variation.c, which
  * includes this file once for each width.
  *
- *   LANE      a number, or numbers side by side, with the operators of one
- *   LANES     how many
- *   NAMED(f)  the name of a function of this width
+ *   LANE      a number or a vector of numbers with the operators of one LANES     how many NAMED(f)  the name of a
+ *   function of this width
  *
- * Two levels are made at a time, since the varying forces of both are known by then: the sums of one hide how long
- * those of the other take. Rows 0 and n + 1 of levels are the neighbours of the ends. */
+ * Two levels are computed at a time, since the varying forces of both are known: this hides the latency of their sums.
+ * Rows 0 and n + 1 of levels are the neighbours of the ends. */
 
 static inline LANE *NAMED(level)(const lattice_variation *v, int j) {
   return (LANE *)v->levels + (size_t)(j % LEVELS) * (v->n + 2);
 }
 
-/* What is beside the first and the last row. */
+/* Neighbours of the first and the last row. */
 RIC_INLINE void NAMED(close)(const lattice_variation *v, LANE *c) {
   const LANE wall = {0};
   *(c - 1) = v->ring ? c[v->n - 1] : wall;
   c[v->n] = v->ring ? c[0] : wall;
 }
 
-/* Forces j and j + 1 of springs are side by side. */
+/* Forces j and j + 1 of springs, interleaved. */
 typedef struct NAMED(force_pair) {
   LANE low, high;
 } NAMED(force_pair);
@@ -48,12 +47,12 @@ RIC_INLINE void NAMED(stretch)(const varying_spring *s, const LANE *c, LANE *e) 
   *e = (s->to != NO_PARTICLE ? c[s->to + 1] : nothing) - (s->from != NO_PARTICLE ? c[s->from + 1] : nothing);
 }
 
-/* Varying forces j and j + 1; what the last levels bring is added last, so that little waits for them. */
+/* Varying forces j and j + 1; the last levels are added last, to shorten the chain of dependences. */
 RIC_INLINE void NAMED(raise_springs)(const lattice_variation *v, int j) {
   size_t levels = (size_t)v->order + 1;
   const LANE *low = NAMED(level)(v, j), *high = NAMED(level)(v, j + 1);
   NAMED(force_pair) *force = (NAMED(force_pair) *)v->force, sum;
-  LANE *e = (LANE *)v->stretch, first, second; /* not read again from where they have just been written */
+  LANE *e = (LANE *)v->stretch, first, second; /* kept in registers, not reloaded */
   const double *k = v->k;
   for (size_t i = 0; i < v->count; i++, e += levels, k += levels) {
     NAMED(stretch)(&v->varying[i], low, &first);
@@ -71,8 +70,8 @@ RIC_INLINE void NAMED(weigh)(const stencil *s, size_t i, const LANE *c, LANE *va
   *value = s->own[i] * c[0] + (s->left[i] * *(c - 1) + s->right[i] * c[1]);
 }
 
-/* Row i of level j + 2 and, with `both`, of the next one, which must not wait for it; `high` says that the first is the
- * second of those whose varying forces are known. */
+/* Row i of level j + 2 and, with `both`, of the next one, independently; `high`: the first one is the second of the
+ * levels whose varying forces are known. */
 RIC_INLINE void NAMED(raise_row)(const lattice_variation *v, int j, bool high, bool both, size_t i, LANE *row) {
   const NAMED(force_pair) *force = (const NAMED(force_pair) *)v->force;
   const LANE *c = NAMED(level)(v, j) + 1 + i, *d = NAMED(level)(v, j + 1) + 1 + i;
@@ -92,7 +91,7 @@ RIC_INLINE void NAMED(raise_row)(const lattice_variation *v, int j, bool high, b
   }
 }
 
-/* One level or two in one pass, added up. */
+/* One level or two in one pass, added to the sums. */
 RIC_INLINE void NAMED(raise_levels)(const lattice_variation *v, int j, bool high, bool both) {
   LANE *low = NAMED(level)(v, j + 2) + 1, *next = NAMED(level)(v, j + 3) + 1;
   LANE *restrict q = (LANE *)v->sum_q, *restrict u = (LANE *)v->sum_u;
@@ -146,7 +145,7 @@ RIC_INLINE void NAMED(move)(lattice_variation *v, const tangents *d, size_t firs
     v->sum_q[i] = c0[i] + c1[i];
     v->sum_u[i] = c1[i];
   }
-  for (int j = 0; j < LEVELS; j++) /* those of another width lay elsewhere */
+  for (int j = 0; j < LEVELS; j++) /* another width had another layout */
     NAMED(close)(v, NAMED(level)(v, j) + 1);
   NAMED(raise)(v);
   for (size_t i = 0; i < n; i++)

@@ -5,14 +5,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-/** Columns of a block that are particles following each other. */
+/** Columns of a block that hold consecutive particles. */
 typedef struct series_run {
   size_t column, particle, count;
 } series_run;
 
 /* Constants of the columns of a block, from the lattice and its contacts. */
 
-/* Everything about one particle. */
+/* All constants of one particle. */
 typedef struct site {
   double inverse_mass, cosine, sine;
   ric_spring own, left, right;
@@ -88,7 +88,7 @@ static void load_run(lattice_series *s, const series_run *run) {
     load_particle(s, run, i);
 }
 
-/* First of the sorted contacts at or behind a particle. */
+/* First of the sorted contacts at or after a particle. */
 static size_t first_held(const lattice_contacts *c, size_t particle) {
   size_t low = 0, high = c->held_count;
   while (low < high) {
@@ -113,7 +113,7 @@ static size_t first_pressed(const lattice_contacts *c, size_t particle) {
   return low;
 }
 
-/* A held particle is one of infinite mass; its links still pull at its neighbours. */
+/* A held particle has infinite mass; its links still act on its neighbours. */
 static void hold(lattice_series *s, size_t column) {
   static const block_row rows[] = {ROW_OWN,       ROW_LEFT,       ROW_RIGHT,       ROW_DAMP_OWN,
                                    ROW_DAMP_LEFT, ROW_DAMP_RIGHT, ROW_SITE_SQUARE, ROW_SITE_CUBE,
@@ -140,7 +140,7 @@ static void load_contacts(lattice_series *s, const series_run *run) {
   }
 }
 
-/** Next run of columns, from left to right; starts with a run of zeros, returns false behind the last. */
+/** Next run of columns, from left to right; starts with a run of zeros, returns false after the last. */
 static bool series_next_run(const lattice_series *s, series_run *run) {
   const lattice_block *b = &s->block;
   if (b->whole) { /* one run between two ghosts */
@@ -150,7 +150,7 @@ static bool series_next_run(const lattice_series *s, series_run *run) {
   }
   size_t n = s->lattice->particles, width = b->count + 2 * b->ghosts;
   ptrdiff_t begin = (ptrdiff_t)s->segment.first - (ptrdiff_t)b->ghosts, whole = (ptrdiff_t)n;
-  size_t column = run->column + run->count; /* behind the last run */
+  size_t column = run->column + run->count; /* after the last run */
   if (column == 0 && begin < 0 && !s->ring)
     column = (size_t)-begin;
   ptrdiff_t particle = begin + (ptrdiff_t)column;
@@ -181,14 +181,14 @@ static void series_load_rows(lattice_series *s) {
     lattice_few_load(s->few, b);
 }
 
-/* What is read off a series: how it falls off, and the force on one of its particles. */
+/* Results of a series: the decay of its coefficients, and the force on one of its particles. */
 
 taylor_decay lattice_series_decay(const lattice_series *s) {
   const lattice_block *b = &s->block;
   taylor_decay d = taylor_decay_of(s->segment.coef, b->stride, b->count, b->order);
   for (size_t k = 0; k < b->presses.count; k++) {
     const block_press *p = &b->presses.press[k];
-    if (p->column >= b->ghosts && p->column - b->ghosts < b->count) /* others are their own piece's */
+    if (p->column >= b->ghosts && p->column - b->ghosts < b->count) /* others belong to another piece */
       d.nearest_zero = fmin(d.nearest_zero, hertz_series_nearest_zero(&p->series));
   }
   return d;
@@ -209,7 +209,7 @@ static void subtract_spring(const ric_spring *s, const double *x, double length,
   }
 }
 
-/* Series of a column minus that of another; the second may be left out. */
+/* Series of a column minus that of another; the second may be missing. */
 static void difference(const lattice_block *b, size_t column, size_t other, double *x) {
   for (int j = 0; j <= RIC_POLY_DEGREE; j++)
     x[j] = j > b->order ? 0 : b->c[(size_t)j * b->stride + column];
@@ -257,7 +257,7 @@ static unsigned terms_of(const ric_lattice *lattice) {
   return terms;
 }
 
-/* Rows that the terms need. Two have as much scratch behind them. */
+/* Number of columns of the rows that the terms need. Two rows are followed by scratch of the same size. */
 static size_t columns_of_row(block_row row, unsigned terms, size_t stride) {
   switch (row) {
   case ROW_OWN:
@@ -284,7 +284,7 @@ static size_t columns_of_row(block_row row, unsigned terms, size_t stride) {
   return 0;
 }
 
-/* Takes `size` doubles of the store; with no store, only counts them. */
+/* Allocates `size` doubles of the store; without a store only counts them. */
 static double *take(double *store, size_t *used, size_t size) {
   double *taken = store && size > 0 ? store + *used : NULL;
   *used += size;
@@ -350,18 +350,18 @@ bool lattice_series_fits(const lattice_series *s, const ric_lattice *lattice) {
   return s->block.terms == terms_of(lattice);
 }
 
-/* Most pressed contacts that a block with its halo may see. */
+/* Largest number of pressed contacts in a block with its halo. */
 static size_t most_presses(const lattice_series *s, const lattice_contacts *contacts) {
   size_t most = 0, first = 0, span = s->block.stride;
   if (contacts->pressed_count > 0 && s->lattice->particles <= 2 * span)
-    return 3 * contacts->pressed_count; /* a halo may see a contact of a small ring again */
+    return 3 * contacts->pressed_count; /* the halo may contain a contact of a small ring twice */
   for (size_t k = 0; k < contacts->pressed_count; k++) {
     while (contacts->pressed[k].coordinate - contacts->pressed[first].coordinate >= span)
       first++;
     if (k - first + 1 > most)
       most = k - first + 1;
   }
-  return 2 * most; /* both ends of a ring meet in one block */
+  return 2 * most; /* one block may contain both ends of a ring */
 }
 
 static ric_status reserve_presses(lattice_series *s, size_t count, ric_error *error) {
@@ -424,7 +424,7 @@ static void set_powers(lattice_series *s, double turn) {
 }
 
 /* Series of cos(w t) and sin(w t) in x: their derivatives are the same four numbers again and again. Forces of held
- * contacts go beyond the order. */
+ * contacts need terms beyond the order. */
 static void forcing_series(lattice_series *s, double start, double length) {
   double phase = s->lattice->frequency * start, c = cos(phase), d = sin(phase);
   const double cosine[4] = {c, -d, -c, d}, sine[4] = {d, c, -d, -c};

@@ -9,10 +9,10 @@
 
 /* Taylor series of lattices, block by block.
  *
- * The coefficients of q(start + length x) in x of a stretch of particles, from the state of the whole lattice: O(n) per
- * step, vectorised over particles (lattice_block.h). A stretch that is not the whole lattice reads neighbours beyond
- * its ends: order / 2 of them, order - 1 with damped links. Coordinates may be held, and Hertz contacts may press;
- * which do is the caller's to say. Nothing here looks for contacts. */
+ * The coefficients of q(start + length x) in x for a range of particles, from the state of the whole lattice: O(n) per
+ * step, vectorised over particles (lattice_block.h). A range that is not the whole lattice reads neighbours beyond its
+ * ends: order / 2 of them, order - 1 with damped links. The caller says which coordinates are held and which Hertz
+ * contacts are pressed. Contacts are not detected here. */
 
 enum {
   LATTICE_SERIES_BLOCK = 256, /* particles of a block: 27 coefficients of 282 particles are 61 kB */
@@ -26,9 +26,9 @@ typedef struct lattice_press {
   double position, stiffness;
 } lattice_press;
 
-/** Contacts that act, each list in order of its coordinates. */
+/** Active contacts, each list in order of its coordinates. */
 typedef struct lattice_contacts {
-  const size_t *held; /* coordinates that stay where they are */
+  const size_t *held; /* held coordinates */
   size_t held_count;
   const lattice_press *pressed;
   size_t pressed_count;
@@ -37,14 +37,14 @@ typedef struct lattice_contacts {
 /** Workspace of one block. */
 typedef struct lattice_series lattice_series;
 
-/** @param lattice  says which terms there will be: later ones must fit
+/** @param lattice  determines the terms: later lattices must have the same
  *  @param order  4 to LATTICE_SERIES_ORDER
- *  @param block  most particles of a stretch; with all of them, every stretch is the whole lattice */
+ *  @param block  largest number of particles of a range; if all, every range is the whole lattice */
 ric_status lattice_series_create(const ric_lattice *lattice, int order, size_t block, lattice_series **series,
                                  ric_error *error);
 void lattice_series_destroy(lattice_series **series);
 
-/** Whether a lattice has the terms that the workspace was made for, no more and no fewer. */
+/** Whether a lattice has exactly the terms for which the workspace was created. */
 bool lattice_series_fits(const lattice_series *series, const ric_lattice *lattice);
 
 /** Sets the lattice and its contacts (NULL: none), both borrowed until the next call.
@@ -52,9 +52,9 @@ bool lattice_series_fits(const lattice_series *series, const ric_lattice *lattic
 ric_status lattice_series_begin(lattice_series *series, const ric_lattice *lattice, const lattice_contacts *contacts,
                                 ric_error *error);
 
-/** Segment of the particles [first, first + count), count <= block; beyond the last one of a ring comes the first.
+/** Segment of the particles [first, first + count), count <= block; after the last one of a ring comes the first.
  *  @param q, v  [n] state at time `start`; q of pressed coordinates lies below their obstacles (u > 0)
- *  @param length  not 0; negative runs back in time
+ *  @param length  not 0; negative: backwards in time
  *  @returns the segment; its coefficients live in the workspace until the next call. */
 ric_segment lattice_series_segment(lattice_series *series, const double *q, const double *v, double start,
                                    double length, size_t first, size_t count);
@@ -62,7 +62,7 @@ ric_segment lattice_series_segment(lattice_series *series, const double *q, cons
 /** The last segment. */
 ric_segment lattice_series_last(const lattice_series *series);
 
-/** How the coefficients of the last segment fall off; branch points are those of its own pressed contacts. */
+/** Decay of the coefficients of the last segment; branch points are those of its own pressed contacts. */
 taylor_decay lattice_series_decay(const lattice_series *series);
 
 /** Makes the last segment shorter without a new recurrence.
@@ -71,7 +71,7 @@ ric_segment lattice_series_shorten(lattice_series *series, const double *q, cons
 
 /** Force on a particle of the last segment along it, as if it were not held: its springs, its links and the forcing,
  *  without Hertz contacts. Its neighbours must belong to the segment, or the segment be the whole lattice.
- *  @param c  [RIC_POLY_DEGREE + 1], all set; cubes and cosines go beyond the order of the series
+ *  @param c  [RIC_POLY_DEGREE + 1], all set; cubes and cosines have terms beyond the order of the series
  *  @returns the degree. */
 int lattice_series_force(const lattice_series *series, size_t particle, double *c);
 
@@ -81,18 +81,18 @@ enum { SERIES_POWERS = (RIC_POLY_DEGREE / 4 + 1) * 4 };
 
 struct lattice_series {
   lattice_block block;
-  lattice_few *few; /* which makes the levels; NULL: the block does */
+  lattice_few *few; /* computes the levels; NULL: the block does */
   double *store;    /* all arrays of the block */
   size_t halo;
   const ric_lattice *lattice;
   lattice_contacts contacts;
   bool ring;
   ric_segment segment; /* the last one */
-  size_t loaded_count; /* particles of the stretch whose rows are loaded, from segment.first on; 0: none */
+  size_t loaded_count; /* particles of the range whose rows are loaded, from segment.first on; 0: none */
   size_t held_count;
   size_t *held_column; /* [stride] */
   double cosine[SERIES_POWERS], sine[SERIES_POWERS];
-  double turn;                 /* frequency times length of the steps for which there are */
+  double turn;                 /* frequency times length of the steps for which `power` is valid */
   double power[SERIES_POWERS]; /* turn^j / j! */
 };
 

@@ -7,7 +7,7 @@
 #include "hertz_series.h"
 #include "numeric/number_block.h"
 
-/* Tangent vectors side by side. */
+/* SIMD lanes of tangent vectors. */
 #if defined(__GNUC__)
 typedef double wide_lanes __attribute__((vector_size(64), aligned(8), may_alias));
 enum { WIDE = 8 };
@@ -48,7 +48,7 @@ RIC_INLINE void extension(const lattice_variation *v, const varying_spring *s, d
 
 enum { PADDED = (LATTICE_SERIES_ORDER / RIC_LANES + 1) * RIC_LANES };
 
-/* Coefficients of e^2 up to the order, some at a time; e has as many zeros before it. */
+/* Coefficients of e^2 up to the order, several at a time; e is preceded by as many zeros. */
 RIC_INLINE void square(const double *e, int order, double *out) {
   for (int j = 0; j <= order; j += RIC_LANES) {
     ric_lanes even = {0}, odd = {0};
@@ -83,7 +83,7 @@ static void stiffen_press(const lattice_variation *v, const lattice_press *p, do
     k[j] *= 1.5 * p->stiffness;
 }
 
-/* Lists by particle what the springs do. Counted, then summed up, then filled from the last to the first. */
+/* Lists the actions of the springs by particle: counts, partial sums, then filling from the last to the first. */
 static void list_pulls(lattice_variation *v) {
   size_t *first = v->first_pull; /* zeros */
   for (size_t k = 0; k < v->count; k++) {
@@ -142,7 +142,7 @@ void lattice_variation_stiffen(lattice_variation *v, const lattice_contacts *act
 #undef LANES
 #undef NAMED
 
-/* The columns from `first` on. A lane moves the same way in any width. */
+/* The columns from `first` on. The operations of a lane do not depend on the width. */
 RIC_VECTORISED static void move_by_four(lattice_variation *v, const tangents *d, size_t first) {
   while (first + 1 < d->columns) {
     const size_t left = d->columns - first, count = left < RIC_LANES ? left : RIC_LANES;
@@ -154,7 +154,7 @@ RIC_VECTORISED static void move_by_four(lattice_variation *v, const tangents *d,
 }
 
 #ifdef RIC_WIDE
-/* As many as fill more than half of the lanes. @returns the first that is left */
+/* As many columns as fill more than half of the lanes. @returns the first remaining one */
 RIC_WIDE static size_t move_by_eight(lattice_variation *v, const tangents *d, size_t first) {
   while (first + RIC_LANES < d->columns) {
     const size_t left = d->columns - first, count = left < WIDE ? left : WIDE;
@@ -199,7 +199,7 @@ static void load_particle(lattice_variation *v, const ric_lattice *l, size_t i) 
   v->damped |= v->dampers.own[i] != 0;
 }
 
-/* Counts the nonlinear springs, and lists them where there is a list. */
+/* Counts the nonlinear springs, and lists them if there is a list. */
 static void take_spring(const ric_spring *spring, size_t from, size_t to, varying_spring *list, size_t *count) {
   if (spring->quadratic == 0 && spring->cubic == 0)
     return;
@@ -249,7 +249,7 @@ static bool allocate_constants(lattice_variation *v) {
   return true;
 }
 
-/* All that is lanes begins where a line of the cache does. */
+/* All lane arrays are aligned to cache lines. */
 static bool allocate_lanes(lattice_variation *v) {
   size_t n = v->n, levels = (size_t)v->order + 1, count = v->capacity;
   size_t rows = LEVELS * (n + 2) + 2 * n + count * (levels + 2);

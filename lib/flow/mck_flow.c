@@ -12,7 +12,7 @@
 
 typedef struct pressed_contact {
   const ric_obstacle *obstacle;
-  bool acts; /* its force takes part in this step */
+  bool acts; /* its force is included in this step */
   hertz_series series;
   double root[HERTZ_LEVELS]; /* u^{1/2} over the accepted part of a step, for tangent vectors */
 } pressed_contact;
@@ -27,7 +27,7 @@ typedef struct mck_flow {
   mck_hold hold;
   pressed_contact *pressed; /* [pressed_count] */
   size_t pressed_count;
-  double *variation; /* [order + 2][n] a tangent vector along the step, and its acceleration; NULL: none is carried */
+  double *variation; /* [order + 2][n] a tangent vector along the step, and its acceleration; NULL: none */
 } mck_flow;
 
 static inline const mck_system *mck_flow_system(const mck_flow *f) {
@@ -88,7 +88,7 @@ static void add_pressure_slope(const mck_flow *f, int j, double *acceleration) {
   }
 }
 
-/* What contacts do whose force was left out of the step. */
+/* Impulsive jumps of tangent vectors by contacts whose force was omitted from the step. */
 static void apply_omitted_forces(const mck_flow *f, double x, double h, const double *q, double *u) {
   for (size_t k = 0; k < f->pressed_count; k++) {
     const pressed_contact *c = &f->pressed[k];
@@ -162,9 +162,9 @@ static void mck_flow_transport(ric_flow *flow, double x) {
  *
  *   c_{j+2} = h^2 / ((j+1)(j+2)) [M^-1 (f_j - K c_j) - M^-1 C (j+1) c_{j+1} / h],
  *
- * where held contacts project the bracket at every level, which gives their forces level by level, too. The length of a
- * step follows from the decay of the coefficients, which costs little beside products with matrices: row sums of a
- * dense M^-1 K exceed its frequencies, by half for some tens of coordinates. */
+ * where held contacts project the bracket at every level, which also gives their forces level by level. The length of a
+ * step follows from the decay of the coefficients, at low cost compared with matrix products: row sums of a dense M^-1
+ * K overestimate its frequencies, by half for some tens of coordinates. */
 
 /* Coefficients [order - 1] of the force of a held coordinate. */
 static double *reaction_of(const mck_flow *f, size_t k) {
@@ -280,7 +280,7 @@ static void accelerate_start(mck_flow *f) {
   accelerate(f, 1, 0, harmonic_at(mck_flow_system(f), f->base.time));
 }
 
-/* Sorts out which pressed contacts act; @returns whether one does. */
+/* Decides which pressed contacts act; @returns whether one does. */
 static bool choose_acting(mck_flow *f, int direction, double *limit) {
   double natural = taylor_stepper_natural(&f->stepper), least = taylor_step_least(f->base.time);
   bool any = false;
@@ -307,7 +307,7 @@ static ric_status mck_start(ric_flow *flow, ric_error *error) {
   const ric_system *s = flow->system;
   const char *trouble = mck_hold_set(&f->hold, mck_of(s), flow->contact);
   f->pressed_count = 0;
-  f->stepper.trial = f->stepper.longest; /* steps before say nothing about those after contacts have changed */
+  f->stepper.trial = f->stepper.longest; /* previous steps do not predict those after a change of contacts */
   for (size_t k = 0; k < s->obstacle_count; k++)
     if (flow->contact[k] == CONTACT_PRESSED && isfinite(s->obstacles[k].stiffness))
       f->pressed[f->pressed_count++].obstacle = &s->obstacles[k];
@@ -380,7 +380,7 @@ static void plan(mck_flow *f, const mck_system *s) {
                       forced ? s->frequency : 0);
 }
 
-/* A mass that has become dense couples the coordinates that are held. */
+/* A mass matrix that has become dense couples the held coordinates. */
 static ric_status mck_begin(ric_flow *flow, bool renewed, ric_error *error) {
   mck_flow *f = (mck_flow *)flow;
   const mck_system *s = mck_flow_system(f);

@@ -45,7 +45,7 @@ RIC_VECTORISED static void evaluate(const ric_segment *segment, size_t first, si
   size_t i = 0;
   for (; i + LANES <= count; i += LANES)
     horner(top + i, segment->stride, segment->degree, x, value + i, slope ? slope + i : NULL, LANES);
-  if (i < count && count >= LANES) { /* some columns twice */
+  if (i < count && count >= LANES) { /* some columns are computed twice */
     i = count - LANES;
     horner(top + i, segment->stride, segment->degree, x, value + i, slope ? slope + i : NULL, LANES);
   } else if (x == 1)

@@ -8,31 +8,31 @@
 
 enum { LEAST_ORDER = 4, MOST_ORDER = 30, FIRST_COEFFICIENTS = 4 };
 
-/* Series of a motion of frequency w cancel in rounding like exp(w h); beyond 2.2 that costs a digit. */
+/* Cancellation in the series of a motion of frequency w grows like exp(w h); beyond 2.2 it costs a digit. */
 static const double longest_reach = 2.2;
 
-/* Of the tolerance, what the first term left out of a linear motion may be: truncation has a sign and adds up over 1e6
+/* First omitted term of a linear motion, relative to the tolerance: truncation has a sign and accumulates over 1e6
  * steps. */
 static const double share = 0.01;
 
-/* What the first term left out of linear tangent vectors may be, at least. */
+/* Lower limit of the first omitted term of linear tangent vectors. */
 static const double carried_error = 1e-14;
 
-/* Of the tolerance, what the last terms may be where they are measured. */
+/* Last terms relative to the tolerance if the step follows from their measured decay. */
 static const double measured_share = 0.1;
 
-/* Steps stay inside the circle in which a branch point does not lie. */
+/* Steps stay inside this fraction of the circle without branch points. */
 static const double inside = 0.9;
 
 static const double most_growth = 1000;
 
-/* A prescribed length is exceeded by so much rather than leaving a step of rounding errors. */
+/* A prescribed length may be exceeded by this fraction to avoid a last step of the size of rounding errors. */
 static const double length_slack = 1e-6;
 
-/* Steps below that part of the time, or of its unit, are so few ulps long that their lengths mean nothing. */
+/* Steps below this fraction of the time, or of its unit, have lengths of few ulps, dominated by rounding. */
 static const double resolution = 1e-12;
 
-/* Series whose first coefficients are larger may overflow where they are evaluated. */
+/* Series with larger first coefficients may overflow when evaluated. */
 static const double most_size = DBL_MAX * 1e-6;
 
 int taylor_order(double tolerance) {
@@ -50,8 +50,8 @@ double taylor_reach(double tolerance, int order) {
   return fmin(reach, longest_reach);
 }
 
-/** Longest step times |s| with which tangent vectors of linear motions go, whatever the motion itself takes: 3.3 at
- *  order 26. A motion that leaves what is fast at rest says nothing about tangent vectors that do not. */
+/** Longest step times |s| for tangent vectors of linear motions, independent of the motion itself: 3.3 at order 26. A
+ *  motion that does not excite fast modes gives no bound for tangent vectors that do. */
 static double taylor_carried_reach(double tolerance, int order) {
   return exp((log(fmax(carried_error, tolerance)) + lgamma(order + 2.0)) / (order + 1));
 }
@@ -86,7 +86,7 @@ RIC_VECTORISED static double largest(const double *x, size_t count) {
   return found + sum;
 }
 
-/* The variants' own names would be exported if they were not static. */
+/* The variants of a public symbol would be exported, too, so they are static. */
 double taylor_largest(const double *x, size_t count) {
   return largest(x, count);
 }
@@ -111,7 +111,7 @@ taylor_decay taylor_decay_join(taylor_decay a, taylor_decay b) {
                         .nearest_zero = fmin(a.nearest_zero, b.nearest_zero)};
 }
 
-/* What changes grows at least with the length, hence one power less. */
+/* The change of the state grows at least linearly with the length, hence one power less. */
 double taylor_step_factor(const taylor_decay *d, int order, double tolerance) {
   double allowed = measured_share * tolerance * d->change, factor = most_growth;
   for (int k = 0; k < 2; k++)
@@ -134,16 +134,16 @@ bool taylor_step_vanishes(double time, double length) {
 }
 
 double taylor_step_least(double time) {
-  return 4 * resolution * (1 + fabs(time)); /* steps after it may be half as long */
+  return 4 * resolution * (1 + fabs(time)); /* following steps may be half as long */
 }
 
-/* Measured lengths are trusted to that part: most steps then need no shortening. */
+/* Fraction of measured lengths that is used: most steps then need no shortening. */
 static const double caution = 0.97;
 
-/* A first series after a step without a force: what has happened there is over soon. */
+/* Growth of the first series after a step without a force: the transient ends soon. */
 static const double growth_after_limit = 4;
 
-/* States beyond it are what makes a series overflow, and not the length of the step. */
+/* Beyond it a series overflows because of the state, not of the step length. */
 static const double most_state = DBL_MAX * 1e-8;
 
 double taylor_stepper_natural(const taylor_stepper *s) {
@@ -203,7 +203,7 @@ static ric_status by_decay(taylor_stepper *s, double stop, double most, ric_erro
   if (factor < 1) {
     length = taylor_step_length(remaining, best, false);
     if (taylor_step_vanishes(f->time, length))
-      return blow_up(f, "its steps shrink to nothing", error);
+      return blow_up(f, "its steps become too short", error);
     s->shorten(f, length);
   }
   return set_step(f, length, stop);

@@ -1,4 +1,4 @@
-/* The bypass (discontinuity) map: where its gap is smallest, the map itself, and kappa, its second order. */
+/* The discontinuity mapping (bypass map): the minimum of the gap, the map itself, and kappa, its second order. */
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -10,11 +10,11 @@
 #include "numeric/vector.h"
 #include "shooting/arcs.h"
 
-/* Where the gap of the free motion is smallest, and where it opens, forwards and backwards in time.
+/* Search for the minimum of the gap of the free motion, and for its opening, forwards and backwards in time.
  *
- * The gap is followed by its rate: on the steps of a short motion the gap itself may vary by less than its rounding
- * where the rate still varies by many times its own. Rates are polynomials on the segments of the flow; their
- * integrals are searched with certainty (polynomial.h). */
+ * The search uses the gap rate: in a short motion the gap may vary by less than its rounding while the rate varies by
+ * many times its own. Rates are polynomials on the segments of the flow; certified searches (polynomial.h) are applied
+ * to their integrals. */
 
 typedef struct gap_search {
   ric_flow *flow; /* borrowed */
@@ -22,23 +22,23 @@ typedef struct gap_search {
   gap_reader reader;
 } gap_search;
 
-/* A short way of the free motion in one go.
+/* A short interval of the free motion in one step.
  *
- * A flow with variable order starts with short steps of low order, each as wrong as its tolerance allows: after a way
- * of 1e-6 the gap of a motion that grazes by 1e-13 is lost in that. Here Gragg's midpoint rule is extrapolated
- * (Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I, section II.9), which over times that are short
- * for the motion errs by rounding only; where it does not, it says so. */
+ * A flow with variable order starts with short steps of low order, each with an error up to its tolerance: after an
+ * interval of 1e-6 the gap of a motion that grazes by 1e-13 is lost in this error. Here Gragg's midpoint rule is
+ * extrapolated (Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I, section II.9). Over intervals that
+ * are short for the motion its error is rounding only; otherwise it reports failure. */
 
 typedef struct gragg {
   const ric_system *system;
-  double *rows;                /* [GRAGG_ROWS][n + m] extrapolations of one row, over those of the row before */
-  double *before, *now, *rate; /* [n + m] ways from the start; rates of change */
+  double *rows;                /* [GRAGG_ROWS][n + m] extrapolations of one row, replacing those of the previous row */
+  double *before, *now, *rate; /* [n + m] displacements from the start; rates of change */
   double *point;               /* [n + m] */
 } gragg;
 
 enum { GRAGG_ROWS = 9 }; /* of 2, 4, 6, ... midpoint steps */
 
-static const double least_state = 1e-3; /* of a state, as flows have it */
+static const double least_state = 1e-3; /* of a state, as in flows */
 
 static ric_status gragg_init(gragg *l, const ric_system *system, ric_error *error) {
   size_t size = system->coordinates + system->speeds;
@@ -62,7 +62,7 @@ static bool gragg_rate(gragg *l, double t) {
   return s->model->rate(s, NULL, t, l->point, l->point + n, l->rate, l->rate + n) == NULL;
 }
 
-/* The way from x after `steps` steps, in l->now. */
+/* The displacement from x after `steps` steps, in l->now. */
 static bool gragg_midpoint(gragg *l, double t, double dt, const double *x, int steps) {
   size_t size = l->system->coordinates + l->system->speeds;
   double h = dt / steps;
@@ -82,14 +82,14 @@ static bool gragg_midpoint(gragg *l, double t, double dt, const double *x, int s
   return true;
 }
 
-/* Adds row `row` to the Aitken-Neville scheme, whose last row is kept, highest order first; returns by how much the
- * highest order changed what the one below it says. */
+/* Adds row `row` to the Aitken-Neville scheme, whose last row is kept, highest order first; returns the change by the
+ * highest order. */
 static double gragg_extrapolate(gragg *l, int row) {
   size_t size = l->system->coordinates + l->system->speeds;
   double change = 0;
   for (int order = 1; order <= row; order++) {
     double ratio = (double)(row + 1) / (row + 1 - order), divisor = ratio * ratio - 1;
-    double *coarse = l->rows + (size_t)(order - 1) * size; /* of the row before; this row's takes its place */
+    double *coarse = l->rows + (size_t)(order - 1) * size; /* of the previous row; replaced by that of this row */
     change = 0;
     for (size_t i = 0; i < size; i++) {
       double fine = l->now[i], step = (fine - coarse[i]) / divisor;
@@ -102,8 +102,8 @@ static double gragg_extrapolate(gragg *l, int row) {
   return row > 0 ? change : INFINITY;
 }
 
-/** Moves a state by dt, when callbacks work and the extrapolation converges to `tolerance` of the size of the state, or
- *  of 1e-3 when that is larger. @returns whether it has; x is untouched otherwise. */
+/** Integrates a state over dt, if callbacks succeed and the extrapolation converges to `tolerance` times the size of
+ *  the state, or times 1e-3 if that is larger. @returns whether it has; x is unchanged otherwise. */
 static bool gragg_move(gragg *l, double t, double dt, double *x, double tolerance) {
   size_t size = l->system->coordinates + l->system->speeds;
   double scale = fmax(largest(x, size), least_state), change, best = INFINITY;
@@ -122,18 +122,18 @@ static bool gragg_move(gragg *l, double t, double dt, double *x, double toleranc
   return true;
 }
 
-/* The bypass map of one obstacle. */
+/* The discontinuity mapping of one obstacle. */
 
 struct ric_bypass {
   ric_system *system;
   size_t obstacle, size; /* n + m */
   double reach;
   arc_runner runner;
-  bool short_intervals; /* short ways are not for the flow to move */
+  bool short_intervals; /* short intervals are not integrated by the flow */
   gragg gragg;
   gap_search search;
   impact_solver law;
-  double *x, *rates; /* [n + m] a state on the way; rates of change */
+  double *x, *rates; /* [n + m] a state of the free motion; rates of change */
   double time;       /* of x */
 };
 
@@ -148,10 +148,10 @@ static void gap_search_clear(gap_search *s) {
   gap_reader_clear(&s->reader);
 }
 
-/* One search along the motion; slopes are those along it, against time when it runs backwards. */
+/* One search along the motion; slopes are in the direction of the search, also backwards in time. */
 typedef struct gap_path {
   gap_search *s;
-  bool opening;        /* else a minimum */
+  bool opening;        /* otherwise a minimum */
   double level, slope; /* of the gap, where the last part ended */
   double time;         /* found */
   const char *trouble;
@@ -191,7 +191,7 @@ static bool search_part(gap_path *w, const ric_segment *piece, const gap_part *r
   return false;
 }
 
-/* Whether it is found on [from, to] of a piece, or there is trouble. */
+/* Whether it is found on [from, to] of a piece, or an error occurs. */
 static bool search_segment(gap_path *w, const ric_segment *piece, double from, double to, double before, int halvings) {
   gap_part rate;
   w->trouble = gap_read(&w->s->reader, piece, w->s->obstacle, WATCH_RATE, from, to, &rate);
@@ -225,7 +225,7 @@ static ric_status search_interval(gap_path *w, double t, const double *x, double
   RIC_TRY(ric_flow_start(flow, t, x, x + flow->system->coordinates, error));
   while (ric_flow_time(flow) != end) {
     ric_status status = ric_flow_step(flow, end, error);
-    if (status == RIC_ENUMERIC) /* nothing is to be found where the motion ends */
+    if (status == RIC_ENUMERIC) /* nothing is found where the motion ends */
       return RIC_OK;
     RIC_TRY(status);
     if (search_step(w))
@@ -237,10 +237,10 @@ static ric_status search_interval(gap_path *w, double t, const double *x, double
   return RIC_OK;
 }
 
-/** First local minimum of the gap on the way from a state.
- *  @param span  signed length of the way in time, not 0
+/** First local minimum of the gap along the motion from a state.
+ *  @param span  signed length of the interval, not 0
  *  @param rate  gap rate at the state
- *  @param time  set; NaN when there is none, or when the motion ends before
+ *  @param time  set; NaN if there is none, or the motion ends before
  *  @returns RIC_ECALLBACK, RIC_EINVAL as ric_flow_start. */
 static ric_status gap_search_minimum(gap_search *s, double t, const double *x, double span, double rate, double *time,
                                      ric_error *error) {
@@ -259,18 +259,18 @@ static ric_status gap_search_opening(gap_search *s, double t, const double *x, d
   return RIC_OK;
 }
 
-/* A minimum within this part of the reach, as the rate and its derivative foretell it, is the nearest: motions are
- * smooth over a part of the reach that is larger by far. */
+/* A minimum predicted by the gap rate and its derivative within this fraction of the reach is the nearest one: motions
+ * are smooth over much larger fractions of the reach. */
 static const double near_part = 1e-6;
 
-/* A minimum that Newton's method does not settle within this part of the reach is none. */
+/* A minimum that Newton's method does not refine within this fraction of the reach is rejected. */
 static const double converged_part = 1e-6;
 
-/* An impact may leave the gap rate below zero by this, as a part of what it was, and absolutely: rates of users' gaps
- * come from differences. */
+/* Tolerated negative gap rate after an impact, relative to that before it and absolute: rates of user gaps come from
+ * differences. */
 static const double turn_tol = 1e-6, turn_rounding = 1e-10;
 
-/* A short way is as good as this part of the flow's tolerance, which the flow takes at every step of a way. */
+/* Accuracy on a short interval as a fraction of the flow's tolerance, which applies to every step of the flow. */
 static const double gragg_part = 0.01;
 
 enum { NEWTON_STEPS = 12 };
@@ -361,7 +361,8 @@ static ric_status read_gap(const ric_bypass *b, double *gap, ric_error *error) {
   return trouble ? grazing_callback_error(b->time, b->obstacle, trouble, error) : RIC_OK;
 }
 
-/* The minimum nearest in time, NaN without one: downhill first, then uphill, as far as it would be nearer there. */
+/* The minimum nearest in time, NaN without one: downhill first, then uphill, as far as a minimum there would be nearer.
+ */
 static ric_status find_nearest(ric_bypass *b, double *time, ric_error *error) {
   double rate, acceleration, sense, span = b->reach, other;
   RIC_TRY(read_rates(b, &rate, &acceleration, error));
@@ -380,7 +381,7 @@ static ric_status find_nearest(ric_bypass *b, double *time, ric_error *error) {
   return RIC_OK;
 }
 
-/* Newton's method on the gap rate, until rounding is all that is left of it. */
+/* Newton's method on the gap rate, down to rounding. */
 static ric_status refine_minimum(ric_bypass *b, double *curvature, ric_error *error) {
   double rate, last = INFINITY, least = converged_part * b->reach;
   for (int k = 0; k < NEWTON_STEPS; k++) {
@@ -404,7 +405,7 @@ static ric_status refine_minimum(ric_bypass *b, double *curvature, ric_error *er
 static ric_status move_to_minimum(ric_bypass *b, double t, const double *x, ric_bypass_seen *seen, ric_error *error) {
   double time;
   size_t n = b->system->coordinates;
-  RIC_TRY(ric_flow_start(arc_runner_flow(&b->runner), t, x, x + n, error)); /* refuses what is not finite */
+  RIC_TRY(ric_flow_start(arc_runner_flow(&b->runner), t, x, x + n, error)); /* fails for states that are not finite */
   memcpy(b->x, x, b->size * sizeof *x);
   b->time = t;
   RIC_TRY(find_nearest(b, &time, error));
@@ -425,8 +426,8 @@ ric_status ric_bypass_look(ric_bypass *b, double t, const double *x, ric_bypass_
   return RIC_OK;
 }
 
-/* Newton's method on the gap, from where the search has found it open. So near to grazing that the gap's rounding
- * decides about the time, the search knows better: it has the rates. */
+/* Newton's method on the gap, from the time at which the search found it open. If grazing is so close that the rounding
+ * of the gap determines the time, the result of the search is kept: it uses the rates. */
 static ric_status refine_contact(ric_bypass *b, double tau, ric_error *error) {
   double rate, gap, last = fabs(b->time - tau) / 4;
   for (int k = 0; k < NEWTON_STEPS; k++) {
@@ -460,7 +461,7 @@ static ric_status hit(ric_bypass *b, double *gap_rate, ric_error *error) {
   *gap_rate = fmin(c.rate, 0);
   if (c.rate_end >= turn_tol * *gap_rate - turn_rounding)
     return RIC_OK;
-  return ric_fail(error, RIC_EINVAL, "obstacle %zu: an impact turns the gap rate %g into %g, expected >= 0",
+  return ric_fail(error, RIC_EINVAL, "obstacle %zu: an impact changes the gap rate %g to %g, expected >= 0",
                   b->obstacle, c.rate, c.rate_end);
 }
 
@@ -494,20 +495,20 @@ ric_status ric_bypass_leading(ric_bypass *b, const ric_grazing_local *at_grazing
   return RIC_OK;
 }
 
-/* kappa, the coefficient of y^2 in the bypass map.
+/* kappa, the coefficient of y^2 in the discontinuity mapping.
  *
- * Seen from x = x* - y^2 n with eta n = 1, psi(x) = -y^2 + O(y^4), and (C(x) - x) / y^2 - s xi / y = kappa + O(y) is
- * a series in y. Another n moves x along the surface psi = const by O(y^2), and that changes C - x by O(y |x - x*|),
- * which is O(y^3): kappa does not depend on it. Here n is along eta.
+ * At x = x* - y^2 n with eta n = 1, psi(x) = -y^2 + O(y^4), and (C(x) - x) / y^2 - s xi / y = kappa + O(y) is a series
+ * in y. Another n moves x along the surface psi = const by O(y^2), and that changes C - x by O(y |x - x*|), which is
+ * O(y^3): kappa does not depend on it. Here n is along eta.
  *
- * The limit y -> 0 is by Neville's scheme, as far as rounding allows: that of psi over y^3, and the error of s, whose
- * A_g comes from differences where the gap is a user's, over y. Without s, as the slope of (C(x) - x) / y, kappa has
- * three digits less: one order is lost at each level. */
+ * Neville's scheme gives the limit y -> 0, as far as rounding allows: that of psi over y^3, and the error of s over y,
+ * whose A_g comes from differences for user gaps. Without s, as the slope of (C(x) - x) / y, kappa has three digits
+ * less: one order is lost at each level. */
 
-enum { LEVELS = 7, SKIPPED = 8 }; /* halvings of y; and those before the map works at all */
+enum { LEVELS = 7, SKIPPED = 8 }; /* halvings of y; and those before the map can be evaluated */
 
-/* Time that the first one of the states spends behind the obstacle until the minimum, as a part of the reach; no more
- * than that of a motion whose times are of order one. */
+/* Time of the first state behind the obstacle until the minimum, as a fraction of the reach, but no more than for a
+ * motion with times of order one. */
 static const double first_part = 0.25;
 
 /* Neville's scheme towards y = 0, one row per level of y. */
@@ -516,9 +517,9 @@ typedef struct scheme {
   const ric_grazing_local *at;
   double t;
   const double *x;
-  double *row, *last;      /* [LEVELS][n + m] orders of this level and of the one before */
+  double *row, *last;      /* [LEVELS][n + m] orders of this level and of the previous one */
   double *state, *image;   /* [n + m] */
-  double *best;            /* [n + m] slope so far */
+  double *best;            /* [n + m] best result so far */
   double y[LEVELS], error; /* of best */
   int level;
 } scheme;
@@ -536,7 +537,7 @@ static ric_status sample(scheme *k, double depth, ric_error *error) {
   RIC_TRY(ric_bypass_map(k->b, k->t, k->state, k->image, &seen, error));
   double y = k->y[k->level] = sqrt(fmax(-seen.psi, 0));
   if (!(y > 0))
-    return ric_fail(error, RIC_ENUMERIC, "the gap is %.3g at a state %.3g behind grazing, expected less than zero",
+    return ric_fail(error, RIC_ENUMERIC, "the gap is %.3g at a state %.3g beyond grazing, expected a negative gap",
                     seen.psi, depth);
   for (size_t i = 0; i < size; i++)
     k->row[i] = ((k->image[i] - k->state[i]) / y - s * at->xi[i]) / y;
@@ -550,8 +551,8 @@ static double difference(const double *a, const double *b, size_t size) {
   return most;
 }
 
-/* The orders of this level. An entry is as good as it agrees with the two it is made of: beyond the best one rounding
- * takes over. */
+/* The orders of this level. The error of an entry is its difference from the two entries it is computed from: beyond
+ * the best one rounding dominates. */
 static void extrapolate(scheme *k) {
   size_t size = k->b->size;
   for (int order = 1; order <= k->level; order++) {

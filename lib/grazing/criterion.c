@@ -1,4 +1,4 @@
-/* The criterion of what follows a grazing point: signs of coefficients, and the proof that the rest are positive. */
+/* The criterion at a grazing bifurcation: signs of coefficients, and the proof that all further ones are positive. */
 #include <float.h>
 #include <math.h>
 #include <stdint.h>
@@ -22,19 +22,20 @@
  *
  *   |e B^i w| <= |e B^j| |B^j w|   for all i >= 2 j,
  *
- * with a right-hand side that only falls as j grows, in the end like the second multiplier over lambda to the power 2j.
- * Such coordinates are C^T z with C C^T = X = sum over i < N of (B^i)^T B^i / s^(2i), |B^N / s^N| <= 1/2: there |B| <=
- * s, chosen between second / lambda and 1. Whatever rounding does to X, |B| < 1 is verified. */
+ * with a right-hand side that decreases with j, asymptotically like (second multiplier / lambda)^(2j). Such coordinates
+ * are C^T z with C C^T = X = sum over i < N of (B^i)^T B^i / s^(2i), |B^N / s^N| <= 1/2: there |B| <= s, chosen between
+ * second / lambda and 1. |B| < 1 is verified, whatever the rounding of X. */
 
 typedef struct tail_proof {
   size_t n;
   double *B;        /* [n][n] */
   double *row, *w;  /* [n] e B^j and B^j w */
   double *work;     /* [n] */
-  bool contracting; /* whether |B| < 1 is certain; nothing is known otherwise */
+  bool contracting; /* whether |B| < 1 is certain; otherwise there is no bound */
 } tail_proof;
 
-/* B^N with N = 2 to this is the last power looked at: multipliers whose moduli differ by less than 1e-9 are not told.
+/* B^N with N = 2 to this is the last power computed: multipliers whose moduli differ by less than 1e-9 are not
+ * separated.
  */
 enum { most_doublings = 32 };
 
@@ -43,7 +44,7 @@ static double length(const double *x, size_t n) {
   return gsl_blas_dnrm2(&view.vector);
 }
 
-/* C = A^T B or A B, plus C where it is added. */
+/* C = A^T B or A B, optionally plus C. */
 static void multiply(CBLAS_TRANSPOSE_t transposed, const double *a, const double *b, bool add, double *c, size_t n) {
   gsl_matrix_const_view A = gsl_matrix_const_view_array(a, n, n), B = gsl_matrix_const_view_array(b, n, n);
   gsl_matrix_view C = gsl_matrix_view_array(c, n, n);
@@ -61,7 +62,7 @@ static void apply(const tail_proof *t, CBLAS_TRANSPOSE_t transposed, double *x) 
 
 /* --- B, e and w --------------------------------------------------------------------------------------------------- */
 
-/* x less its part along `along`, as `dual` measures it; dual . along = 1. */
+/* x minus its component (dual . x) along `along`; dual . along = 1. */
 static void project(double *x, size_t stride, const double *dual, const double *along, size_t n) {
   double part = 0;
   for (size_t k = 0; k < n; k++)
@@ -86,12 +87,12 @@ static void build_rest(tail_proof *t, const balanced_map *map, const dominant_mu
 
 /* --- coordinates in which B contracts ----------------------------------------------------------------------------- */
 
-/* What their search works on, [n][n] each. */
+/* Workspace of their search, [n][n] each. */
 typedef struct contraction {
   double *X, *A, *scratch;
 } contraction;
 
-/* X of 2N powers from X of N: X + A^T X A with A = (B / s)^N, which is squared then. */
+/* X of 2N powers from X of N: X + A^T X A with A = (B / s)^N; then A is squared. */
 static void double_powers(const contraction *c, size_t n) {
   multiply(CblasNoTrans, c->X, c->A, false, c->scratch, n);
   multiply(CblasTrans, c->A, c->scratch, true, c->X, n);
@@ -110,7 +111,7 @@ static void sum_powers(const tail_proof *t, double rate, const contraction *c) {
     double_powers(c, n);
 }
 
-/* B becomes C^T B C^-T, row and w what they are there. */
+/* Transforms B to C^T B C^-T, row and w accordingly. */
 static void change_coordinates(tail_proof *t, const double *C) {
   size_t n = t->n;
   gsl_matrix_view B = gsl_matrix_view_array(t->B, n, n);
@@ -131,8 +132,9 @@ static bool contracts(const tail_proof *t, double margin, double *rest) {
   return isfinite(length(rest, n * n)) && cholesky_factor(rest, n);
 }
 
-/* As X >= I, errors of B grow by no more than |C| in the new coordinates. That of the projector need not be added: the
- * rest of the exact L is similar to one that close to B by a matrix that differs from I by dominant->accuracy. */
+/* As X >= I, errors of B grow by no more than |C| in the new coordinates. The error of the projector need not be added:
+ * the complementary part of the exact L is similar to a matrix that close to B, by a matrix that differs from I by
+ * dominant->accuracy. */
 static void contract(tail_proof *t, const dominant_multiplier *d, const contraction *c) {
   size_t n = t->n;
   double ratio = d->second / d->modulus, unit = 10 * (double)n * DBL_EPSILON;
@@ -146,7 +148,7 @@ static void contract(tail_proof *t, const dominant_multiplier *d, const contract
   t->contracting = contracts(t, unit + 2 * error * length(c->X, n * n), c->scratch);
 }
 
-/** At j = 0. The multiplier must be real, alone and told. @returns RIC_ENOMEM, with nothing to clear */
+/** At j = 0. The multiplier must be real, simple and resolved. @returns RIC_ENOMEM, with nothing to clear */
 static ric_status tail_proof_init(tail_proof *t, const balanced_map *map, const dominant_multiplier *d,
                                   ric_error *error) {
   size_t n = map->n, used = 0;
@@ -172,23 +174,23 @@ static void tail_proof_clear(tail_proof *t) {
   *t = (tail_proof){0};
 }
 
-/** |e B^j| |B^j w|: no |c_i / lambda^i - alpha| is above it for i >= 2 j. Infinite unless contracting. */
+/** |e B^j| |B^j w|: bounds |c_i / lambda^i - alpha| for i >= 2 j. Infinite unless contracting. */
 /* --- the bound ---------------------------------------------------------------------------------------------------- */
 
 static double tail_proof_bound(const tail_proof *t) {
   return t->contracting ? length(t->row, t->n) * length(t->w, t->n) : INFINITY;
 }
 
-/** Goes on to j + 1. */
+/** Advances to j + 1. */
 static void tail_proof_advance(tail_proof *t) {
   apply(t, CblasTrans, t->row);
   apply(t, CblasNoTrans, t->w);
 }
 
-/* Moduli above 1 less this lie on the circle or outside; as multiplier_tol of ric_multiplier_options. */
+/* Moduli above 1 minus this lie on the unit circle or outside; as multiplier_tol of ric_multiplier_options. */
 static const double circle_tol = 1e-9;
 
-/* What the proof leaves between the rest and alpha: rounding in alpha is below a hundredth of each of its factors. */
+/* Margin between the bound and alpha in the proof: rounding in alpha is below a hundredth of each of its factors. */
 static const double tail_margin = 0.1;
 
 const char *ric_grazing_verdict_name(ric_grazing_verdict verdict) {
@@ -231,7 +233,7 @@ static ric_status check_options(const ric_grazing_criterion_options *o, ric_erro
   return RIC_OK;
 }
 
-/* What is at work in one call. */
+/* Workspace of one call. */
 typedef struct criterion_work {
   const ric_grazing_criterion_options *options;
   balanced_map map;
@@ -239,7 +241,7 @@ typedef struct criterion_work {
   tail_proof tail;
   coefficient_run run;
   double alpha;  /* of the balanced map */
-  bool provable; /* whether the tail has a proof that may be tried */
+  bool provable; /* whether the proof for all further coefficients can be tried */
 } criterion_work;
 
 /* --- signs -------------------------------------------------------------------------------------------------------- */
@@ -248,7 +250,7 @@ static bool tail_is_proved(criterion_work *w) {
   return w->provable && tail_proof_bound(&w->tail) < (1 - tail_margin) * w->alpha;
 }
 
-/* Goes through the coefficients until one is negative, or the rest are positive, or there are no more to look at. */
+/* Checks the coefficients until one is negative, the others are proved positive, or their largest number is reached. */
 static void check_coefficients(criterion_work *w, ric_grazing_criterion *c) {
   coefficient_run *run = &w->run;
   for (;;) {
@@ -279,7 +281,7 @@ static void name_multiplier(ric_complex z, char *text, size_t size) {
     snprintf(text, size, "%.9g %+.9gi", z.re, z.im);
 }
 
-/* A condition on the dominant multiplier alone that fails. @returns whether there is one */
+/* Tests conditions on the dominant multiplier. @returns whether one fails */
 static bool spectrum_fails(const criterion_work *w, ric_grazing_criterion *c) {
   const dominant_multiplier *d = &w->dominant;
   double modulus = hypot(c->dominant.re, c->dominant.im);
@@ -289,35 +291,35 @@ static bool spectrum_fails(const criterion_work *w, ric_grazing_criterion *c) {
     snprintf(c->reason, sizeof c->reason, "multiplier %s of modulus %.9g does not lie inside the unit circle", name,
              modulus);
   else if (modulus == 0)
-    snprintf(c->reason, sizeof c->reason, "all multipliers are zero, and so is c_i from some i on");
+    snprintf(c->reason, sizeof c->reason, "all multipliers are zero, so c_i = 0 from some i on");
   else if (!d->real)
     snprintf(c->reason, sizeof c->reason, "the dominant multiplier %s is complex", name);
   else if (!d->alone)
-    snprintf(c->reason, sizeof c->reason, "the dominant multiplier %s is not alone: another has the modulus %.9g", name,
-             c->second);
+    snprintf(c->reason, sizeof c->reason, "the dominant multiplier %s is not simple: another one has the modulus %.9g",
+             name, c->second);
   else if (d->value.re < 0)
     snprintf(c->reason, sizeof c->reason, "the dominant multiplier %s is negative", name);
   else if (!dominant_is_resolved(d))
     snprintf(c->reason, sizeof c->reason,
-             "the dominant multiplier %s is not told from others: rounding reaches %.3g of the distance", name,
+             "the dominant multiplier %s cannot be separated from others: rounding is %.3g of the distance", name,
              d->accuracy);
   else
     return false;
   return true;
 }
 
-/* One on what eta and xi see of it. */
+/* The same for the components of eta and xi along its eigenvectors. */
 static bool component_fails(const criterion_work *w, ric_grazing_criterion *c) {
   const dominant_multiplier *d = &w->dominant;
   if (dominant_is_coupled(d))
     return false;
   bool observed = fabs(d->observed) > d->observed_tol;
   snprintf(c->reason, sizeof c->reason, "%s the eigenvector of the dominant multiplier %.9g",
-           observed ? "xi does not excite" : "eta does not see", c->dominant.re);
+           observed ? "xi does not excite" : "eta has no component along", c->dominant.re);
   return true;
 }
 
-/* One on the coefficients. */
+/* The same for the coefficients. */
 static bool coefficients_fail(const criterion_work *w, ric_grazing_criterion *c) {
   if (c->first_zero != SIZE_MAX)
     snprintf(c->reason, sizeof c->reason, "c_%zu is zero within the tolerance: higher orders decide", c->first_zero);
@@ -325,7 +327,7 @@ static bool coefficients_fail(const criterion_work *w, ric_grazing_criterion *c)
     snprintf(c->reason, sizeof c->reason, "alpha = %.3g is negative, and none of the first %zu c_i", c->alpha,
              w->run.i + 1);
   else if (!w->tail.contracting)
-    snprintf(c->reason, sizeof c->reason, "what follows the dominant multiplier %.9g has no bound beyond rounding",
+    snprintf(c->reason, sizeof c->reason, "the terms beyond the dominant multiplier %.9g have no bound above rounding",
              c->dominant.re);
   else if (c->settled == SIZE_MAX || w->run.i + 1 < c->settled)
     snprintf(c->reason, sizeof c->reason,
@@ -404,7 +406,7 @@ static ric_status fill_coefficients(const criterion_work *w, double *coefficient
   return RIC_OK;
 }
 
-/* Back in coordinates of the map. */
+/* In coordinates of the map. */
 static void fill_departure(const criterion_work *w, const ric_grazing_criterion *c, double *departure) {
   size_t n = w->map.n;
   double sum = 0, most;
@@ -426,7 +428,7 @@ ric_status ric_grazing_criterion_find(const ric_grazing_map *map, const ric_graz
   RIC_TRY(ric_grazing_map_check(map, error));
   RIC_TRY(check_options(&o, error));
   if (!coefficients && count > 0)
-    return ric_fail(error, RIC_EINVAL, "no room for coefficients, expected room for count = %zu", count);
+    return ric_fail(error, RIC_EINVAL, "coefficients = NULL, expected an array of count = %zu", count);
   gsl_error_handler_t *handler = gsl_set_error_handler_off();
   ric_status status = decide_criterion(&work, map, &found, error);
   if (status == RIC_OK)

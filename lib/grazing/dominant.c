@@ -1,4 +1,4 @@
-/* The dominant multiplier of the map beside grazing, in balanced coordinates, and the coefficients eta L^i xi. */
+/* The dominant multiplier of the return map near grazing, in balanced coordinates, and the coefficients eta L^i xi. */
 #include "dominant.h"
 
 #include <float.h>
@@ -14,7 +14,7 @@
 #include "numeric/number_block.h"
 #include "numeric/vector.h"
 
-/* Coordinates that L does not couple are balanced by eta and xi alone, by no more than 2 to this. */
+/* Coordinates that L does not couple are balanced by eta and xi only, by at most 2 to this. */
 enum { most_exponent = 100 };
 
 double *balanced_map_room(size_t n, size_t matrices, size_t vectors) {
@@ -53,7 +53,7 @@ static void balance_vectors(balanced_map *b) {
       b->L[k * b->n + l] *= b->scale[l] / b->scale[k];
 }
 
-/* Rows and columns of L are made of one size where L couples coordinates. */
+/* Balances rows and columns of L where L couples coordinates. */
 static ric_status balance_matrix(balanced_map *b, ric_error *error) {
   size_t n = b->n;
   gsl_vector *further = gsl_vector_alloc(n);
@@ -80,7 +80,7 @@ static ric_status balance(balanced_map *b, ric_error *error) {
     sum += fabs(b->eta[k]) + fabs(b->xi[k]);
   }
   if (!(isfinite(sum) && isfinite(largest(b->L, n * n))))
-    return ric_fail(error, RIC_ENUMERIC, "the map has numbers too far apart to be balanced");
+    return ric_fail(error, RIC_ENUMERIC, "the numbers of the map differ too much in size to be balanced");
   b->L_exponent += normalise(b->L, n * n);
   b->c_exponent += normalise(b->eta, n) + normalise(b->xi, n);
   gsl_vector_view entries = gsl_vector_view_array(b->L, n * n);
@@ -106,10 +106,10 @@ ric_status balanced_map_init(balanced_map *b, const ric_grazing_map *map, ric_er
   return status;
 }
 
-/* Eigenvectors with larger errors say nothing: components would have to be a tenth of eta and xi to be seen. */
+/* Eigenvectors with larger errors are unusable: only components of a tenth of eta and xi would be significant. */
 static const double accuracy_tol = 1e-3;
 
-/* Rounding in eigenproblems of size n, in units of n: ten times and more what is observed. */
+/* Rounding in eigenproblems of size n, in units of n: at least ten times the observed value. */
 static const double rounding_unit = 10 * DBL_EPSILON;
 
 bool dominant_is_resolved(const dominant_multiplier *d) {
@@ -131,7 +131,7 @@ static double modulus_of(const gsl_vector_complex *values, size_t i) {
   return hypot(values->data[2 * i], values->data[2 * i + 1]);
 }
 
-/* Of those whose moduli are the largest, to the tolerance, the rightmost one: a positive one comes before others. */
+/* Of the multipliers with the largest modulus, to the tolerance, the rightmost one: a positive one is preferred. */
 static size_t choose(const gsl_vector_complex *values, double apart_tol) {
   double most = 0;
   size_t best = SIZE_MAX;
@@ -193,7 +193,8 @@ static double dot_moduli(const double *x, const double *y, size_t n) {
   return sum;
 }
 
-/* What eta and xi see: nothing, if less than zero_tol of the terms, or than a hundred times what rounding makes of it.
+/* Components of eta and xi along the eigenvectors; zero if below zero_tol of their terms, or below a hundred times
+ * their rounding.
  */
 static void evaluate_components(dominant_multiplier *d, const balanced_map *map, double condition, double zero_tol) {
   size_t n = map->n;
@@ -208,13 +209,13 @@ static void evaluate_components(dominant_multiplier *d, const balanced_map *map,
     d->uncertain = fabs(d->observed) * of_excited + fabs(d->excited) * of_observed + of_observed * of_excited;
 }
 
-/* `gap`: the distance to other multipliers, or from L - lambda to a matrix with two of them, if that is less. */
+/* `gap`: the distance to other multipliers, or from L - lambda to a matrix with a double one, if that is smaller. */
 static void evaluate_dominant(dominant_multiplier *d, const balanced_map *map, double gap, double zero_tol) {
   size_t n = map->n;
   double product = dot(d->left, d->right, n);
   for (size_t k = 0; k < n; k++)
     d->left[k] /= product;
-  double condition = 1 / fabs(product); /* both have had the length 1 */
+  double condition = 1 / fabs(product); /* both have the length 1 before */
   double change = rounding_unit * (double)n * map->size * condition;
   d->rounding = change / d->modulus;
   d->accuracy = change / gap;
@@ -223,7 +224,7 @@ static void evaluate_dominant(dominant_multiplier *d, const balanced_map *map, d
   evaluate_components(d, map, condition, zero_tol);
 }
 
-/* Singular vectors of L - lambda I to the singular value zero are both eigenvectors at once. */
+/* The singular vectors of L - lambda I for the singular value zero are both eigenvectors. */
 static ric_status find_vectors(dominant_multiplier *d, const balanced_map *map, double zero_tol, ric_error *error) {
   size_t n = map->n;
   ric_status status = RIC_OK;
@@ -238,7 +239,7 @@ static ric_status find_vectors(dominant_multiplier *d, const balanced_map *map, 
   memcpy(left->data, map->L, n * n * sizeof *map->L);
   for (size_t k = 0; k < n; k++)
     *gsl_matrix_ptr(left, k, k) -= d->value.re;
-  if (n == 1) { /* GSL makes zero of the left vector of 0 */
+  if (n == 1) { /* GSL returns a zero left vector for the matrix 0 */
     gsl_matrix_set_all(left, 1);
     gsl_matrix_set_all(right, 1);
   } else if (gsl_linalg_SV_decomp(left, right, singular, work)) {
@@ -271,7 +272,7 @@ ric_status dominant_find(dominant_multiplier *d, const balanced_map *map, double
   return status;
 }
 
-/* No numbers of a map are known better than to this, relative to the norm; rounding adds less up to size 1000. */
+/* Assumed accuracy of the numbers of a map relative to the norm; rounding adds less up to size 1000. */
 static const double entry_tol = 1e-12;
 
 static double length(const double *x, size_t n) {
@@ -352,7 +353,7 @@ static double noise_of(const noise_bound *noise) {
   return isnan(reach) ? INFINITY : reach;
 }
 
-/* Of the dominant multiplier's part. */
+/* Uncertainty of the part of the dominant multiplier. */
 static double uncertain_part(const coefficient_run *run) {
   double reach = run->uncertain - (double)run->x_exponent;
   return exp2(run->i > 0 ? reach + (double)run->i * log2(run->modulus) : reach);

@@ -1,4 +1,4 @@
-/* Grazing motions: found along a family, made exact, refused where degenerate; their curves in two parameters. */
+/* Grazing motions: found along a family, refined, rejected if degenerate; their curves in two parameters. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -9,23 +9,23 @@
 #include "section.h"
 #include "shooting/shooting.h"
 
-/* Where the gap of a motion has a minimum. */
+/* Minima of the gap of a motion. */
 
 /** A minimum of a gap along a solution of shooting. */
 typedef struct gap_minimum {
   size_t obstacle;
   double time; /* in [0, T) */
   double gap, rate, acceleration;
-  double *x;     /* [n + m] state there; of the caller */
+  double *x;     /* [n + m] state there; owned by the caller */
   double *rates; /* [n + m] of the free motion */
 } gap_minimum;
 
 enum { MOST_MINIMUM_STEPS = 30 };
 
-/* Steps below this part of the period no longer move the minimum. */
+/* Steps below this fraction of the period are rounding. */
 static const double minimum_tol = 1e-15;
 
-/* Steps of Newton's method are not to leave the minimum it starts at. */
+/* Largest step of Newton's method, so that it does not leave the initial minimum. */
 static const double longest_step = 0.05;
 
 /* Into [0, T): a time below zero by less than rounding at T is zero. */
@@ -46,14 +46,14 @@ static ric_status read_gap(const ric_system *s, gap_minimum *k, ric_error *error
   return trouble ? ric_fail(error, RIC_ECALLBACK, "at t = %g, obstacle %zu: %s", t, k->obstacle, trouble) : RIC_OK;
 }
 
-/* Where the gap is not convex, a step down its slope. */
+/* If the gap is not convex, a step down its slope. */
 static double step_of(const gap_minimum *k, double period) {
   const double step = -k->rate / fabs(k->acceleration), most = longest_step * period;
   return isnan(step) ? 0 : fmax(-most, fmin(step, most));
 }
 
-/** Moves a touch to the minimum of its gap that is nearest to its time, and sets the rest.
- *  @returns RIC_ENUMERIC where there is none within a period; as ric_shooting_transfer */
+/** Moves a grazing contact to the minimum of its gap nearest in time, and sets the other fields.
+ *  @returns RIC_ENUMERIC if there is none within a period; as ric_shooting_transfer */
 static ric_status gap_minimum_find(ric_shooting *s, const double *z, double given, double period, gap_minimum *k,
                                    ric_error *error) {
   double before = INFINITY;
@@ -73,14 +73,13 @@ static ric_status gap_minimum_find(ric_shooting *s, const double *z, double give
   return ric_fail(error, RIC_ENUMERIC, "the gap of obstacle %zu has no minimum near t = %g", k->obstacle, k->time);
 }
 
-/* Which grazing points the theory does not cover. Refusals are RIC_ENUMERIC and name the
- * condition. */
+/* Grazing points that the theory excludes. They give RIC_ENUMERIC with the violated condition. */
 
 enum { SAMPLES = 129 };
 
-static const double largest_tol = 1e-2; /* that trajectories take */
+static const double largest_tol = 1e-2; /* largest grazing_tol of trajectories */
 
-/* Times this near to each other, over the period, are one. */
+/* Times closer than this, relative to the period, are equal. */
 static const double same_time_tol = 1e-5;
 
 static double sample_range(const ric_system *s, size_t obstacle, double period, const double *q) {
@@ -93,7 +92,7 @@ static double sample_range(const ric_system *s, size_t obstacle, double period, 
   return high - low;
 }
 
-/** How much the gap of an obstacle changes along a motion: largest less smallest, of samples. */
+/** Variation of the gap of an obstacle along a motion: largest minus smallest of samples. */
 static ric_status degenerate_size(ric_shooting *s, const double *z, double given, size_t obstacle, double *size,
                                   ric_error *error) {
   const ric_system *system = s->system;
@@ -122,10 +121,10 @@ static ric_status degenerate_acceleration(const gap_minimum *k, double period, d
                   k->acceleration, k->time);
 }
 
-/* What an event-driven run meets that is not the touch itself. */
+/* Contacts of an event-driven run other than the grazing contact itself. */
 typedef struct contact_record {
   const ric_grazing *g;
-  double slowest; /* gap rates of transversal impacts are larger */
+  double slowest; /* least gap rate of transversal impacts */
   char found[160];
 } contact_record;
 
@@ -139,8 +138,9 @@ static int on_contact(const ric_event *e, void *user) {
   if (is_grazing_contact(w->g, e))
     return 0;
   if (e->kind == RIC_EVENT_GRAZING)
-    snprintf(w->found, sizeof w->found, "two grazing points at once: obstacle %zu comes within %.3g at t = %g, too",
-             e->obstacle, e->depth, e->time);
+    snprintf(w->found, sizeof w->found,
+             "two grazing points at once: the gap of obstacle %zu has the minimum %.3g at t = %g, too", e->obstacle,
+             e->depth, e->time);
   else if (e->kind != RIC_EVENT_CONTACT && e->kind != RIC_EVENT_PARTING &&
            !(e->kind == RIC_EVENT_TRANSVERSAL && -e->gap_rate > w->slowest))
     snprintf(w->found, sizeof w->found, "an impact that is not transversal: %s, obstacle %zu, at t = %g",
@@ -171,7 +171,7 @@ static ric_status degenerate_motion(ric_family *f, const double *z, const ric_gr
   options.poll = s->poll;
   double *x = malloc(g->numbers * sizeof *x);
   const double from =
-      g->time + same_time_tol * g->period; /* just after the touch, which may be an impact by rounding */
+      g->time + same_time_tol * g->period; /* just after the grazing contact, which may be an impact by rounding */
   ric_status status = x ? RIC_OK : ric_fail(error, RIC_ENOMEM, "no memory for %zu numbers", g->numbers);
   if (status == RIC_OK)
     status = ric_shooting_transfer(s, z, g->given, from, from, x, NULL, error);
@@ -185,18 +185,18 @@ static ric_status degenerate_motion(ric_family *f, const double *z, const ric_gr
   return w.found[0] ? ric_fail(error, RIC_ENUMERIC, "%s", w.found) : RIC_OK;
 }
 
-/* Grazing motions: found along a family, and made exact. */
+/* Grazing motions: found along a family, and refined. */
 
 enum { MOST_STEPS = 12, MOST_SHORTER = 12 };
 
-/* Step of the difference that tells how the minimum of the gap changes with the parameter, over 1 + |p|; shorter where
- * that is too long: where the minimum changes by more than a part of the size of the gap's changes, or is not found. */
+/* Step of the difference for the derivative of the minimum of the gap by the parameter, relative to 1 + |p|; shorter if
+ * the minimum changes by more than a fraction of the variation of the gap, or is not found. */
 static const double slope_step = 1e-4, longest_change = 1e-3, shorter = 0.125;
 
-/* Minima this small, over the size of the gap's changes, are zero to rounding. */
+/* Minima below this, relative to the variation of the gap, are zero to rounding. */
 static const double gap_tol = 4e-16;
 
-/* A motion given as one that grazes may be this far from it, over the size of the gap's changes. */
+/* Largest minimum of the gap of a motion given as grazing, relative to the variation of the gap. */
 static const double nearly = 1e-2;
 
 ric_grazing_options ric_grazing_options_default(void) {
@@ -229,9 +229,9 @@ ric_status ric_grazing_init(ric_grazing *g, const ric_shooting *s, ric_error *er
 typedef struct minimum {
   ric_family *f;
   double *z;     /* [unknowns] */
-  double *kept;  /* [unknowns] where a difference sets out */
+  double *kept;  /* [unknowns] start of a difference */
   double period; /* of it */
-  double size;   /* of the gap's changes */
+  double size;   /* variation of the gap */
   gap_minimum touch;
 } minimum;
 
@@ -243,7 +243,7 @@ static ric_status solve_minimum(minimum *k, double parameter, ric_error *error) 
   return gap_minimum_find(f->shooting, k->z, f->given, k->period, &k->touch, error);
 }
 
-/* Central difference; z and the touch are those at the last parameter then. */
+/* Central difference; afterwards z and the grazing contact are those at the last parameter. */
 static ric_status try_slope(minimum *k, double parameter, double h, double *slope, ric_error *error) {
   double gap[2];
   for (int side = 0; side < 2; side++) {
@@ -276,7 +276,7 @@ static ric_status find_slope(minimum *k, double parameter, double *slope, ric_er
                   k->touch.obstacle, parameter);
 }
 
-/* Newton's method with a slope that stays: it shrinks the gap by the relative error of the slope each time. */
+/* Newton's method with fixed slope: each step multiplies the gap by the relative error of the slope. */
 static ric_status refine(minimum *k, ric_grazing *g, ric_error *error) {
   double best = INFINITY;
   RIC_TRY(find_slope(k, g->parameter, &g->slope, error));
@@ -288,12 +288,12 @@ static ric_status refine(minimum *k, ric_grazing *g, ric_error *error) {
     best = gap;
     g->parameter -= k->touch.gap / g->slope;
   }
-  return ric_fail(error, RIC_ENUMERIC, "the parameter at which obstacle %zu is touched does not converge near %.9g",
+  return ric_fail(error, RIC_ENUMERIC, "the grazing point of obstacle %zu does not converge near parameter %.9g",
                   k->touch.obstacle, g->parameter);
 }
 
-/** Fills all that follows from the touch of a motion whose z, parameters and x, that of the touch, are there. The
- * family has its parameters. @returns as ric_grazing_local_find */
+/** Sets all fields that follow from a grazing point whose z, parameters and state x are set. The family has its
+ * parameters. @returns as ric_grazing_local_find */
 /* --- from a motion that nearly grazes --- */
 
 static ric_status grazing_keep(const ric_family *f, const gap_minimum *at, double period, ric_grazing *g,
@@ -309,8 +309,8 @@ static ric_status fill(minimum *k, ric_grazing *g, const ric_grazing_options *o,
   RIC_TRY(solve_minimum(k, g->parameter, error));
   if (!(fabs(k->touch.gap) <= nearly * k->size))
     return ric_fail(error, RIC_ENUMERIC,
-                    "the gap of obstacle %zu is %.3g at its minimum near t = %g: it is not touched", k->touch.obstacle,
-                    k->touch.gap, k->touch.time);
+                    "the gap of obstacle %zu is %.3g at its minimum near t = %g, expected 0: no grazing point",
+                    k->touch.obstacle, k->touch.gap, k->touch.time);
   RIC_TRY(degenerate_acceleration(&k->touch, k->period, k->size, o, error));
   RIC_TRY(refine(k, g, error));
   RIC_TRY(grazing_keep(k->f, &k->touch, k->period, g, error));
@@ -444,7 +444,7 @@ ric_status ric_grazing_search_along(ric_family *f, double *z, double parameter, 
 
 typedef struct tracer {
   ric_family *f;
-  ric_grazing grazing; /* of the point looked at last */
+  ric_grazing grazing; /* of the last point */
   ric_grazing_map map;
   ric_grazing_criterion criterion;
   double coefficients[RIC_GRAZING_CURVE_COEFFICIENTS];
@@ -452,7 +452,7 @@ typedef struct tracer {
   double *rates; /* [n + m] */
   int (*seen)(const ric_grazing_curve_point *point, void *user);
   void *user;
-  ric_status status; /* of a look that failed in the callback */
+  ric_status status; /* of an evaluation that failed in the callback */
   ric_error *error;
 } tracer;
 
@@ -464,7 +464,7 @@ static ric_status find_criterion(tracer *t, const ric_family_curve_point *p, ric
   const gap_found *least = gaps->hit[obstacle] ? &gaps->watch.own : &gaps->watch.free;
   gap_minimum at = {.obstacle = obstacle, .time = least->time, .x = g->x, .rates = t->rates};
   if (least->obstacle != obstacle)
-    return ric_fail(error, RIC_ENUMERIC, "obstacle %zu is touched where obstacle %zu was", least->obstacle, obstacle);
+    return ric_fail(error, RIC_ENUMERIC, "obstacle %zu grazes, expected obstacle %zu", least->obstacle, obstacle);
   memcpy(g->z, p->z, g->unknowns * sizeof *g->z);
   g->parameter = p->parameter;
   g->second = p->second;

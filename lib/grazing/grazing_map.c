@@ -25,7 +25,7 @@ void ric_grazing_map_clear(ric_grazing_map *map) {
   *map = (ric_grazing_map){0};
 }
 
-/* Refuses entries that are not finite, and a vector of zeros where that is not allowed. */
+/* Rejects entries that are not finite, and a vector of zeros if that is not allowed. */
 static ric_status check_vector(const char *name, const double *x, size_t size, bool may_vanish, ric_error *error) {
   bool vanishes = true;
   for (size_t i = 0; i < size; i++) {
@@ -95,7 +95,7 @@ void ric_grazing_map_step(const ric_grazing_map *map, double d, const double *z,
   }
   if (depth < 0)
     return;
-  double root = map->stretch * sqrt(depth); /* NaN of d or z goes on into next */
+  double root = map->stretch * sqrt(depth); /* NaN of d or z propagates to next */
   for (size_t i = 0; i < n; i++)
     next[i] += root * map->xi[i] + depth * map->kappa[i]; /* [FN97] (5.11) */
 }

@@ -1,4 +1,4 @@
-/* Windows of d in which one-impact orbits are admissible and stable; pairs of multipliers on the circle. */
+/* Windows of d in which one-impact orbits are admissible and stable; pairs of multipliers on the unit circle. */
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -20,11 +20,11 @@
  *   1 + t A + B = 0,     A = eta (mu I - L^n)^-1 r xi,     B = eta (mu I - L^n)^-1 r kappa.
  *
  * t is real where Im((1 + B) conj A) = 0. Times |det(mu I - L^n)|^2 / sin theta that is a polynomial in cos theta of
- * degree m - 1: its sign on a grid finer than its waves, and the dips between, find all its zeros. */
+ * degree m - 1: its signs on a grid finer than its oscillations, and the dips in between, locate all its zeros. */
 
 enum { CELLS_PER_SIZE = 16, MOST_ITERATIONS = 200, DIP_STEPS = 60 };
 
-/* Angles next to 0 and pi that are left out: there the pair is at 1 or -1, a fold or a flip. */
+/* Angles closer than this to 0 and pi are excluded: there the pair is at 1 or -1, a fold or a flip. */
 static const double end_angle = 1e-6;
 
 typedef struct search {
@@ -38,13 +38,13 @@ typedef struct search {
   size_t count;
 } search;
 
-/* What the equation is made of at an angle. */
+/* Terms of the equation at an angle. */
 typedef struct terms {
   double A[2], B[2];  /* real, imaginary; B with its 1 */
   double determinant; /* |det(mu I - L^n)|^2, the determinant of the real matrix */
 } terms;
 
-/* Q R of mu I - L^n. Not complex LU: GSL's takes memory, and does not look whether there is any. */
+/* Q R of mu I - L^n. Not complex LU: that of GSL allocates without checking. */
 static double factorise(search *s, double theta) {
   const gsl_matrix *power = s->orbits->power;
   size_t m = power->size1;
@@ -115,7 +115,7 @@ static void refine_zero(search *s, double low, double high) {
     s->y[s->count++] = s->orbits->map->stretch / (2 * t);
 }
 
-/* Two zeros between grid points: where the function dips towards 0 without a change of its sign there. */
+/* Searches two zeros between grid points, where the function dips towards 0 without a sign change. */
 static void search_dip(search *s, const double *theta, const double *value) {
   s->sign = copysign(1, value[1]);
   gsl_function f = {depth_of_dip, s};
@@ -206,7 +206,7 @@ static bool find_admissible(const one_impact *o, ric_grazing_edge *low, ric_graz
   return low->y < high->y;
 }
 
-/* A cut that lies inside of the admissible range, the first two of the list. */
+/* Adds a cut inside the admissible range, which is given by the first two of the list. */
 static void add_cut(cuts *c, ric_grazing_edge_kind kind, double y) {
   if (y > c->list[0].y && y < c->list[1].y)
     c->list[c->count++] = (ric_grazing_edge){.kind = kind, .y = y};
@@ -254,13 +254,13 @@ static double middle_of(double low, double high) {
   return low > 0 ? sqrt(low) * sqrt(high) : high / 2;
 }
 
-/* In ln d; infinite where d comes to 0, or passes it. */
+/* Width in ln d; infinite if the range contains or touches d = 0. */
 static double width_of(double low, double high) {
   return low * high > 0 ? fabs(log(high / low)) : INFINITY;
 }
 
-/* No multiplier crosses the circle between two cuts: one orbit tells for all. At a cut that leaves both sides stable
- * a pair has touched the circle only. */
+/* No multiplier crosses the unit circle between two cuts: one orbit decides for all. At a cut with both sides stable a
+ * pair has only touched the circle. */
 static ric_status choose_widest(one_impact *o, const cuts *c, ric_grazing_window *window, ric_error *error) {
   const ric_grazing_edge *from = NULL, *chosen = NULL;
   double widest = 0;

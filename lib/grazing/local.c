@@ -8,7 +8,7 @@
 
 #include "numeric/vector.h"
 
-/* An impact that leaves this part of the gap rate, and more, coming in is none. */
+/* If more than this fraction of the gap rate is still negative after an impact, the impact map is invalid. */
 static const double turn_tol = 1e-6;
 
 ric_status grazing_check_obstacle(const ric_system *system, size_t obstacle, ric_error *error) {
@@ -66,7 +66,7 @@ static ric_status check_state(const ric_system *s, double t, const double *x, ri
   return RIC_OK;
 }
 
-/* Gaps do not depend on speeds: of first-order systems all is coordinates. @param unit  [n + m], zeros */
+/* Gaps do not depend on speeds; first-order systems have coordinates only. @param unit  [n + m], zeros */
 static const char *find_eta(const ric_system *s, size_t obstacle, double t, const double *x, double *unit,
                             double *eta) {
   const tangents direction = {.columns = 1, .q = unit, .u = unit + s->coordinates};
@@ -93,7 +93,7 @@ static const char *find_impulse(const ric_system *s, double t, const double *x, 
   return trouble;
 }
 
-/* [FN97] (4.4)-(4.6) want a change of state that is smooth in the gap rate and vanishes with it. */
+/* [FN97] (4.4)-(4.6) require a change of state that is smooth in the gap rate and vanishes with it. */
 static ric_status check_map_slope(size_t obstacle, const impact_slope *found, ric_error *error) {
   if (!found->exists && !(found->power > 0.05))
     return ric_fail(error, RIC_EINVAL,
@@ -107,7 +107,7 @@ static ric_status check_map_slope(size_t obstacle, const impact_slope *found, ri
                     obstacle, found->moved, found->rate, found->power);
   if (!(found->turn >= 1 - turn_tol))
     return ric_fail(error, RIC_EINVAL,
-                    "obstacle %zu: the impact map turns small gap rates v into %.3g v, expected them not to come in",
+                    "obstacle %zu: the impact map changes small gap rates v < 0 to %.3g v, expected them >= 0",
                     obstacle, 1 - found->turn);
   return RIC_OK;
 }

@@ -1,4 +1,4 @@
-/* One-impact orbits of the map beside grazing, in closed form. */
+/* One-impact orbits of the return map near grazing, in closed form. */
 #include "one_impact.h"
 
 #include <float.h>
@@ -13,7 +13,7 @@
 
 #include "ricochet/grazing_map.h"
 
-/* Iterates of the closed forms: their rounding errors add up, and d falls by lambda^2 with each of them. */
+/* Largest period of the closed forms: rounding errors accumulate, and d decreases by lambda^2 with each period. */
 enum { MOST_PERIOD = 10000 };
 
 static ric_status allocate_one_impact(one_impact *o, ric_error *error) {
@@ -35,7 +35,7 @@ static ric_status allocate_one_impact(one_impact *o, ric_error *error) {
   return ric_multipliers_init(&o->multipliers, m, error);
 }
 
-/* L^n by squaring. The matrices of the solves and the derivative are its room. */
+/* L^n by squaring, in the memory of the matrices of the solves and the derivative. */
 static void raise_power(one_impact *o) {
   gsl_matrix *square = o->factors, *product = o->derivative;
   size_t m = o->map->size;
@@ -53,7 +53,7 @@ static void raise_power(one_impact *o) {
   }
 }
 
-/* Goes through scale e L^(j-1) x, j = 1 ... n, and leaves x at L^(n-1) x. */
+/* Computes scale e L^(j-1) x, j = 1 ... n, and sets x to L^(n-1) x. */
 static void project(one_impact *o, const gsl_vector *e, double scale, gsl_vector *x, double *values) {
   size_t m = o->map->size;
   gsl_matrix_const_view L = gsl_matrix_const_view_array(o->map->L, m, m);
@@ -68,7 +68,7 @@ static void project(one_impact *o, const gsl_vector *e, double scale, gsl_vector
   }
 }
 
-/* Whether the last pivot, the smallest one, is rounding beside the largest entry of the matrix. */
+/* Whether the last and smallest pivot is rounding relative to the largest entry of the matrix. */
 static bool is_singular(const gsl_matrix *factors, double largest) {
   size_t m = factors->size1;
   return !(fabs(gsl_matrix_get(factors, m - 1, m - 1)) > (double)m * DBL_EPSILON * largest);
@@ -76,7 +76,7 @@ static bool is_singular(const gsl_matrix *factors, double largest) {
 
 ric_status one_impact_solve(one_impact *o, int sign, bool transposed, gsl_vector *b, ric_error *error) {
   size_t m = o->map->size;
-  double largest = 1; /* I and L^n may cancel: what is left is compared with them */
+  double largest = 1; /* I and L^n may cancel: the difference is compared with them */
   int parity;
   for (size_t i = 0; i < m; i++)
     for (size_t j = 0; j < m; j++) {
@@ -86,7 +86,7 @@ ric_status one_impact_solve(one_impact *o, int sign, bool transposed, gsl_vector
       largest = fmax(largest, fabs(entry));
       gsl_matrix_set(o->factors, i, j, (i == j) + sign * entry);
     }
-  /* Not LU: GSL's takes memory, and does not look whether there is any. */
+  /* Not LU: that of GSL allocates without checking. */
   gsl_linalg_QRPT_decomp(o->factors, o->reflectors, o->order, &parity, o->norms);
   if (is_singular(o->factors, largest) || gsl_linalg_QRPT_svx(o->factors, o->reflectors, o->order, b) != 0)
     return ric_fail(error, RIC_ENUMERIC, "period = %zu: I %c L^n is singular", o->period, sign < 0 ? '-' : '+');
@@ -150,7 +150,7 @@ ric_status one_impact_multipliers(one_impact *o, double y, ric_error *error) {
   return ric_multipliers_of_matrix(o->derivative->data, m, 0, NULL, &o->multipliers, error);
 }
 
-/* Which of the other iterates is nearest to the border. */
+/* Finds the other iterate nearest to the border. */
 static void find_nearest(const one_impact *o, double y, ric_grazing_cycle *cycle) {
   cycle->nearest = 0;
   cycle->clearance = INFINITY;
@@ -204,10 +204,10 @@ ric_status ric_grazing_cycle_at(const ric_grazing_map *map, size_t period, doubl
   return status;
 }
 
-/* Which y > 0 exist at a d, smallest first. @param y  [2] @returns how many */
+/* Solutions y > 0 at a d, smallest first. @param y  [2] @returns how many */
 static size_t solve_for_y(const one_impact *o, double d, double *y) {
   double first = o->first[o->period - 1], second = 1 + o->second[o->period - 1], roots[2];
-  double unit = d == 0 ? 1 : sqrt(fabs(d)); /* of y, so that no square of a small d underflows */
+  double unit = d == 0 ? 1 : sqrt(fabs(d)); /* unit of y, so that no square of a small d underflows */
   int found = gsl_poly_solve_quadratic(second, first / unit, d == 0 ? 0 : d < 0 ? 1 : -1, &roots[0], &roots[1]);
   size_t count = 0;
   for (int i = 0; i < found; i++) {

@@ -1,5 +1,5 @@
-/* One-impact orbits of one period n as functions of y = sqrt(d - eta z): what of them does not depend on y, and what
- * does. Internal to the room. Errors handled by GSL must be off.
+/* One-impact orbits of one period n as functions of y = sqrt(d - eta z): quantities independent of y, and functions of
+ * y. Internal to the room. The error handler of GSL must be off.
  *
  * The iterate j after the impact is (I - L^n)^-1 L^(j-1) (y s xi + y^2 kappa), the impact itself that of j = n. */
 #ifndef RICOCHET_ONE_IMPACT_H
@@ -25,8 +25,8 @@ typedef struct one_impact {
   ric_multipliers multipliers;
 } one_impact;
 
-/** @returns RIC_EINVAL for the map and the period; RIC_ENUMERIC where I - L^n is singular or not finite; RIC_ENOMEM;
- *  always to be cleared. */
+/** @returns RIC_EINVAL for the map and the period; RIC_ENUMERIC if I - L^n is singular or not finite; RIC_ENOMEM; clear
+ *  it in any case. */
 ric_status one_impact_init(one_impact *orbits, const ric_grazing_map *map, size_t period, ric_error *error);
 void one_impact_clear(one_impact *orbits);
 
@@ -37,7 +37,7 @@ double one_impact_d(const one_impact *orbits, double y);
 void one_impact_clearance(const one_impact *orbits, size_t j, double *steady, double *slope);
 
 /** Multipliers of the orbit of y, into `multipliers`.
- *  @returns RIC_ENUMERIC where the derivative overflows; as ric_multipliers_of_matrix */
+ *  @returns RIC_ENUMERIC if the derivative overflows; as ric_multipliers_of_matrix */
 ric_status one_impact_multipliers(one_impact *orbits, double y, ric_error *error);
 
 /** Solves (I + sign L^n) x = b, transposed or not, in place of b; `factors` and `order` are overwritten.

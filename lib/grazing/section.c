@@ -11,24 +11,25 @@
 
 /* kappa on a section.
  *
- * Behind grazing by y^2, at x* - y^2 n with eta n = 1, the bypass map and the motion from the touch to the section add
- * to what the motion would do without them
+ * At x* - y^2 n with eta n = 1, a penetration of y^2, the discontinuity mapping and the motion from the grazing point
+ * to the section add
  *
  *   s y xi' + y^2 kappa' + O(y^3):
  *
- * kappa of the bypass map, and what the motion after it makes of the square of s y xi, where it is nonlinear, where
- * impacts follow and where the section is crossed at another time. All of it is in the motion itself; kappa' is its
- * limit for vanishing y. Any n will do: its choice is of the order of y |x - x*|. */
+ * kappa of the discontinuity mapping, and the second-order term of the motion after it in s y xi, from nonlinearity,
+ * further impacts and the changed time of crossing. The motion itself contains all of it; kappa' is its limit for
+ * vanishing y. Any n can be used: its effect is of the order of y |x - x*|. */
 
 enum { TRIALS = 7, MOST_APPROACHES = 4, MOST_CROSSINGS = 20 };
 
-/* The largest y, over the root of A_g (T / 2 pi)^2, a size of the gap's changes; halved for extrapolation. */
+/* The largest y, relative to the root of A_g (T / 2 pi)^2, an estimate of the variation of the gap; halved for
+ * extrapolation. */
 static const double largest_y = 0.05;
 
-/* Steps onto the section below this part of the period are rounding when they no longer shrink. */
+/* Steps onto the section below this fraction of the period are rounding if they no longer shrink. */
 static const double crossing_tol = 1e-11;
 
-/* A motion whose crossing is farther off than this part of the period has missed the section. */
+/* A motion whose crossing is later than this fraction of the period has missed the section. */
 static const double farthest = 0.25;
 
 typedef struct second {
@@ -39,10 +40,10 @@ typedef struct second {
   double *x, *home;           /* [numbers] a state; the motion on the section */
   double *difference;         /* [state] */
   double *normal;             /* [numbers] n */
-  double *smooth;             /* [size] what -n y^2 becomes without impacts, over y^2 */
+  double *smooth;             /* [size] image of -n y^2 without impacts, divided by y^2 */
   double *rows, *rate;        /* [TRIALS][size] of Neville's scheme; [numbers] */
   double *best;               /* [size] kappa so far */
-  size_t next, expected;      /* impact of the motion that the next one is to be; how many more there are to be */
+  size_t next, expected;      /* index of the expected next impact of the motion; number of expected impacts left */
   double *block;
 } second;
 
@@ -78,9 +79,9 @@ static void close(second *w) {
   free(w->block);
 }
 
-/** Coordinates [size] of what is left of a difference [state] of the motion a period later when it is moved along the
- *  flow onto the section. */
-/* Coordinates of what is left of a vector [state] when it is moved along the flow onto the section. */
+/** Coordinates [size] of a difference [state] of the motion one period later, projected onto the section along the
+ *  flow. */
+/* Coordinates of a vector [state] projected onto the section along the flow. */
 static void section_project(const section *k, const double *vector, double *z) {
   const double along = dot(k->normal, vector, k->state) / dot(k->normal, k->rates, k->state);
   for (size_t j = 0; j < k->size; j++) {
@@ -89,7 +90,7 @@ static void section_project(const section *k, const double *vector, double *z) {
   }
 }
 
-/* Sets `home`, n, and where -n goes. */
+/* Sets `home`, n, and the image of -n. */
 static ric_status begin_second(second *w, ric_error *error) {
   const section *k = w->k;
   const ric_grazing *g = k->g;
@@ -110,8 +111,8 @@ static ric_status begin_second(second *w, ric_error *error) {
 
 /* --- onto the section --- */
 
-/* How far the state w->x at a time is from the motion on the section a period later, and the time in which the flow
- * would bring it onto the section, to first order. */
+/* Difference of the state w->x at a time from the motion on the section one period later, and the time in which the
+ * flow reaches the section, to first order. */
 static ric_status measure_return(second *w, double t, double *ahead, ric_error *error) {
   const section *k = w->k;
   const size_t n = k->f->problem.system->coordinates;
@@ -131,12 +132,12 @@ static ric_status measure_return(second *w, double t, double *ahead, ric_error *
   return RIC_OK;
 }
 
-/* As if there were no obstacles, forwards or back. */
+/* Integrates the free motion, forwards or backwards. */
 static ric_status flow_to(second *w, double t, double end, ric_error *error) {
   return arc_runner_move(&w->k->f->shooting->runner, t, end, w->x, 0, NULL, NULL, error);
 }
 
-/* Moves the state onto the section; its difference from the motion is set then. */
+/* Moves the state onto the section and sets its difference from the motion. */
 static ric_status cross(second *w, double t, ric_error *error) {
   double ahead, before = INFINITY;
   for (int i = 0; i < MOST_CROSSINGS; i++) {
@@ -150,19 +151,19 @@ static ric_status cross(second *w, double t, ric_error *error) {
     t += ahead;
     before = size;
   }
-  return ric_fail(error, RIC_ENUMERIC, "the section is not met near t = %g", t);
+  return ric_fail(error, RIC_ENUMERIC, "the motion does not cross the section near t = %g", t);
 }
 
 /* --- the limit --- */
 
-/* When the motion next has one of its impacts after the touch, since then. */
+/* Time from the grazing point to the next impact of the motion with this index. */
 static double time_to(const section *k, size_t which) {
   const double period = k->g->period;
   const double time = fmod(arcs_time(k->f->shooting->arcs.impacts[which], k->g->z, period) - k->grazing_time, period);
   return time < 0 ? time + period : time;
 }
 
-/* Of the impacts of the motion until the section, how many there are; the first one after the touch. */
+/* Number of impacts of the motion from the grazing point to the section, and the first of them. */
 static size_t expect(const section *k, double duration, size_t *first) {
   size_t count = 0;
   *first = 0;
@@ -174,7 +175,7 @@ static size_t expect(const section *k, double duration, size_t *first) {
   return count;
 }
 
-/* Ends a run after the last impact that is expected, and at one that is not. */
+/* Ends a run after the last expected impact, and at an unexpected one. */
 static int on_impact(const ric_event *e, void *user) {
   second *w = user;
   const arc_plan *arcs = &w->k->f->shooting->arcs;
@@ -186,8 +187,8 @@ static int on_impact(const ric_event *e, void *user) {
   return --w->expected == 0;
 }
 
-/* From the touch through the impacts that the motion has before the section; `time` is that of the last one. It may be
- * later than the motion is on the section. */
+/* From the grazing point through the impacts of the motion before the section; `time` is that of the last one, which
+ * may be later than the crossing of the motion. */
 static ric_status run_through_impacts(second *w, double end, double *time, ric_error *error) {
   const size_t n = w->k->f->problem.system->coordinates;
   const ric_observer observer = {.event = on_impact, .user = w};
@@ -195,10 +196,10 @@ static ric_status run_through_impacts(second *w, double end, double *time, ric_e
   RIC_TRY(ric_trajectory_start(w->trajectory, *time, w->x, w->x + n, error));
   RIC_TRY(ric_trajectory_run(w->trajectory, end + farthest * w->k->g->period, &observer, &run, error));
   if (run.outcome != RIC_RUN_ENDED && run.outcome != RIC_RUN_COMPLETED)
-    return ric_fail(error, RIC_ENUMERIC, "beside the grazing motion: %s at t = %g: %s",
+    return ric_fail(error, RIC_ENUMERIC, "a motion near the grazing one: %s at t = %g: %s",
                     ric_run_outcome_name(run.outcome), run.time, run.reason);
   if (w->expected > 0)
-    return ric_fail(error, RIC_ENUMERIC, "beside the grazing motion there are other impacts than its own until t = %g",
+    return ric_fail(error, RIC_ENUMERIC, "a motion near the grazing one has other impacts than it until t = %g",
                     run.time);
   memcpy(w->x, ric_trajectory_q(w->trajectory), n * sizeof *w->x);
   if (w->k->numbers > n)
@@ -207,8 +208,8 @@ static ric_status run_through_impacts(second *w, double end, double *time, ric_e
   return RIC_OK;
 }
 
-/* From the touch onto the section. What comes after the last impact is smooth when no obstacle is in the way: the touch
- * of the next period, and impacts just behind the section, are not met early. */
+/* From the grazing point onto the section. After the last impact the free motion is used, so that the grazing contact
+ * of the next period, and impacts just behind the section, do not occur early. */
 static ric_status run_on(second *w, ric_error *error) {
   const section *k = w->k;
   const double end = k->time + k->g->period;
@@ -220,8 +221,8 @@ static ric_status run_on(second *w, ric_error *error) {
   return cross(w, end, error);
 }
 
-/* (s y xi + y^2 kappa + ... - s y xi) / y^2 into a row [size]. y is that of the minimum of the gap that the bypass map
- * has found: at the grazing motion itself the gap is zero to rounding only. */
+/* (s y xi + y^2 kappa + ... - s y xi) / y^2 into a row [size]. y is that of the minimum of the gap found by the
+ * discontinuity mapping: the gap of the grazing motion is zero only to rounding. */
 static ric_status try(second *w, double depth, double *row, ric_error *error) {
   const section *k = w->k;
   ric_bypass_seen seen;
@@ -229,7 +230,7 @@ static ric_status try(second *w, double depth, double *row, ric_error *error) {
     w->x[i] = k->g->x[i] - depth * w->normal[i];
   RIC_TRY(ric_bypass_map(w->bypass, k->grazing_time, w->x, w->x, &seen, error));
   if (!(seen.psi < 0))
-    return ric_fail(error, RIC_ENUMERIC, "the gap is %.3g at a state %.3g behind grazing, expected less than zero",
+    return ric_fail(error, RIC_ENUMERIC, "the gap is %.3g at a state %.3g beyond grazing, expected a negative gap",
                     seen.psi, depth);
   RIC_TRY(run_on(w, error));
   const double y = sqrt(-seen.psi);
@@ -242,8 +243,8 @@ static ric_status try(second *w, double depth, double *row, ric_error *error) {
   return RIC_OK;
 }
 
-/* The next order of Neville's scheme, in place from the last row. Of all entries the best one is that which changes
- * least from the coarser one of the two that it is made of: beyond it rounding takes over. */
+/* The next order of Neville's scheme, in place from the last row. The best entry is the one that differs least from the
+ * coarser of the two entries it is computed from: beyond it rounding dominates. */
 static void raise_order(second *w, int order, double *error) {
   const size_t size = w->k->size;
   for (size_t i = TRIALS - 1; i >= (size_t)order; i--) {
@@ -261,7 +262,7 @@ static void raise_order(second *w, int order, double *error) {
   }
 }
 
-/* From a largest y. */
+/* Extrapolates from a given largest y. */
 static ric_status extrapolate(second *w, double most, double *kappa, ric_error *error) {
   double change = INFINITY;
   for (int i = 0; i < TRIALS; i++)
@@ -269,12 +270,12 @@ static ric_status extrapolate(second *w, double most, double *kappa, ric_error *
   for (int order = 1; order < TRIALS; order++)
     raise_order(w, order, &change);
   if (!(change < INFINITY))
-    return ric_fail(error, RIC_ENUMERIC, "motions beside the grazing one do not come back as numbers");
+    return ric_fail(error, RIC_ENUMERIC, "motions near the grazing one overflow before they return");
   memcpy(kappa, w->best, w->k->size * sizeof *kappa);
   return RIC_OK;
 }
 
-/* Motions that start too far from grazing may miss the section, or meet the obstacle again: then from nearer. */
+/* Motions that start too far from grazing may miss the section, or hit the obstacle again: then with a smaller y. */
 static ric_status approach(second *w, double *kappa, ric_error *error) {
   double most = largest_y * sqrt(w->k->g->local.acceleration) * w->k->g->period / two_pi;
   ric_status status = extrapolate(w, most, kappa, error);
@@ -283,7 +284,7 @@ static ric_status approach(second *w, double *kappa, ric_error *error) {
   return status;
 }
 
-/** The map's kappa; `matrix` still is the derivative from the touch to the section. */
+/** kappa of the map; `matrix` is still the derivative from the grazing point to the section. */
 static ric_status section_second(const section *k, ric_grazing_map *map, ric_error *error) {
   second w = {.k = k, .map = map};
   ric_status status = open(&w, error);
@@ -297,17 +298,17 @@ static ric_status section_second(const section *k, ric_grazing_map *map, ric_err
 
 /* The coefficients of the return map on a section.
  *
- * Small differences (dx, dt) of a state and its time go along the motion as dx - F dt at one time: from time a to b,
- * with Y the derivative of the state at b by that at a,
+ * Small differences (dx, dt) of a state and its time propagate along the motion as dx - F dt at one time: from time a
+ * to b, with the derivative Y of the state at b by that at a,
  *
  *   (dx, dt) -> (Y (dx - F(a) dt) + F(b) dt, dt).
  *
- * Without forcing dt is left out. */
+ * Without forcing dt is omitted. */
 
-/* Flows that cross a section at an angle below it do not cross it. */
+/* Crossings at a smaller angle are rejected. */
 static const double least_angle = 1e-8;
 
-/* Sections this near to an impact, over the period, are at it. */
+/* Sections closer than this to an impact, relative to the period, are at the impact. */
 static const double impact_tol = 1e-9;
 
 static bool is_forced(const ric_family *f) {
@@ -347,8 +348,8 @@ static ric_status read_rates(section *k, ric_error *error) {
   return RIC_OK;
 }
 
-/* How fast a motion with rates of this size crosses the section at most. The rate of time, 1, has another unit: it
- * stands by itself. */
+/* Largest speed at which a motion with rates of this size crosses the section. The rate of time, 1, has another unit
+ * and is treated separately. */
 static double fastest(const section *k) {
   const double *normal = k->normal, *rates = k->rates;
   const double still = sqrt(dot(normal, normal, k->numbers)), speed = sqrt(dot(rates, rates, k->numbers));
@@ -375,11 +376,12 @@ static ric_status set_normal(section *k, const double *given, ric_error *error) 
                   k->time, angle, least_angle);
 }
 
-/* The rows of Householder's reflection that takes the normal to the last unit vector, but the last: for a stroboscopic
- * section unit vectors. */
+/* All but the last rows of the Householder reflection that maps the normal to the last unit vector: unit vectors for a
+ * stroboscopic section. */
 static void set_basis(section *k) {
   const size_t last = k->state - 1;
-  const double sign = k->normal[last] < 0 ? -1 : 1; /* to +- the unit vector on whose side it lies: v is not small */
+  const double sign =
+      k->normal[last] < 0 ? -1 : 1; /* to plus or minus the unit vector on its side, so that v is not small */
   for (size_t j = 0; j < k->size; j++)
     for (size_t i = 0; i < k->state; i++) {
       const double vi = k->normal[i] + (i == last ? sign : 0), vj = k->normal[j];
@@ -405,7 +407,7 @@ static void multiply(const section *k, const double *x, double *y) {
     y[i] = dot(k->matrix + i * k->numbers, x, k->numbers);
 }
 
-/* A period later the rates are those of the start. */
+/* One period later the rates are those of the start. */
 static ric_status set_L(section *k, double *L, ric_error *error) {
   RIC_TRY(transfer(k, k->time, k->time + k->g->period, error));
   for (size_t j = 0; j < k->size; j++) {
@@ -423,7 +425,7 @@ static ric_status set_L(section *k, double *L, ric_error *error) {
   return RIC_OK;
 }
 
-/* Minima of the gap do not know when they are: eta sees differences at one time. */
+/* The minimum of the gap does not depend on its time: eta acts on differences at one time. */
 static ric_status set_eta(section *k, double *eta, ric_error *error) {
   RIC_TRY(transfer(k, k->time, k->grazing_time, error));
   for (size_t j = 0; j < k->size; j++) {
@@ -434,14 +436,14 @@ static ric_status set_eta(section *k, double *eta, ric_error *error) {
   return RIC_OK;
 }
 
-/* What the bypass map adds at the touch, on the section after it. */
+/* Image on the section of what the discontinuity mapping adds at the grazing point. */
 static void set_after(section *k, const double *added, double *z) {
   memset(k->goes, 0, k->state * sizeof *k->goes);
   multiply(k, added, k->goes);
   section_project(k, k->goes, z);
 }
 
-/* All but kappa. */
+/* Sets all coefficients except kappa. */
 static ric_status set_map(section *k, ric_grazing_map *map, ric_error *error) {
   const ric_grazing *g = k->g;
   RIC_TRY(set_L(k, map->L, error));
@@ -452,7 +454,7 @@ static ric_status set_map(section *k, ric_grazing_map *map, ric_error *error) {
   return RIC_OK;
 }
 
-/* Neighbouring motions are on different sides of the impact there. */
+/* Whether neighbouring motions are on different sides of an impact there. */
 static bool is_at_impact(const section *k, double time) {
   const arc_plan *arcs = &k->f->shooting->arcs;
   for (size_t i = 0; i < arcs->sequence_count; i++) {
@@ -482,7 +484,7 @@ ric_status section_open(section *k, ric_family *f, const ric_grazing *g, const r
   k->time = plane ? plane->time : is_at_impact(k, 0) ? g->time : 0;
   k->state = g->numbers + (k->forced ? 1 : 0);
   k->size = k->state - 1;
-  k->grazing_time = g->time >= k->time ? g->time : g->time + g->period; /* on the way from the section */
+  k->grazing_time = g->time >= k->time ? g->time : g->time + g->period; /* after the section */
   RIC_TRY(check_map(k, map, error));
   family_forget(f);
   RIC_TRY(family_set(f, g->parameter, g->second, error));

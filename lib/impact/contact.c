@@ -1,4 +1,4 @@
-/* The state of a contact and how it changes: impacts that accumulate (chatter), rest (sticking) and release. */
+/* The state of a contact and its changes: accumulating impacts (chatter, Zeno), rest (sticking) and release. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -6,12 +6,13 @@
 #include "numeric/list.h"
 #include "trajectory.h"
 
-/* The life of a contact: the one place that changes its state.
+/* The states of a contact: the only place that changes them.
  *
- * A contact is open, pressed or held (kept by the flow, which its forces depend on), or passed for good: such a one has
- * no events and is on no list. An open or pressed one departs from zero, fast or slowly, until it is clear of it; a
- * held one comes to rest, where a series of impacts was summed up, or rests. Lists name those that are held, that
- * depart, and that come to rest, so that no step looks at all contacts. */
+ * A contact is open, pressed or held (stored in the flow, whose forces depend on it), or passed permanently: such a
+ * contact has no events and is on no list. An open or pressed contact departs from zero, fast or slowly, until its
+ * function is clearly positive. A held one sticks, or will stick at a later time after its series of impacts was
+ * summed. Lists contain the contacts that are held, depart, or will stick, so that no step has to visit all contacts.
+ */
 
 ric_status index_list_add(index_list *list, size_t item, ric_error *error) {
   size_t *items = list_room(list->items, list->count, &list->capacity, sizeof *items);
@@ -56,7 +57,7 @@ static ric_status depart(ric_trajectory *tr, size_t obstacle, departure how, ric
 ric_status contact_opens(ric_trajectory *tr, size_t obstacle, departure how, ric_error *error) {
   bool persisted = contact_persists(tr, obstacle);
   flow_set_contact(tr->flow, obstacle, CONTACT_OPEN);
-  tr->resting[obstacle] = RESTS_NOT; /* leaves tr->held with the next look at that list */
+  tr->resting[obstacle] = RESTS_NOT; /* is removed from tr->held when that list is next processed */
   RIC_TRY(depart(tr, obstacle, how, error));
   if (persisted)
     trajectory_show_kind(tr, RIC_EVENT_RELEASE, obstacle);
@@ -138,7 +139,7 @@ void contacts_forget_released(ric_trajectory *tr) {
   tr->held.count = kept;
 }
 
-/* Contacts with gap and gap rate zero: which persist, which open, and how impacts accumulate towards rest. */
+/* Contacts with gap and gap rate zero: which stick, which open, and how impacts accumulate until sticking. */
 
 static ric_status callback_error(const ric_trajectory *tr, size_t obstacle, const char *trouble, ric_error *error) {
   return ric_fail(error, RIC_ECALLBACK, "at t = %g, obstacle %zu: %s", tr->flow->time, obstacle, trouble);
@@ -151,7 +152,7 @@ void contacts_measure(ric_trajectory *tr) {
   tr->rate_noise = tr->noise * (1 + (m ? largest(tr->flow->u, m) : place));
 }
 
-/* Rates of the present state into tr->rates. */
+/* Rates of the current state into tr->rates. */
 static ric_status find_rates(ric_trajectory *tr, double t, const double *q, const double *u, ric_error *error) {
   const ric_system *s = tr->system;
   const char *trouble = s->model->rate(s, tr->flow->contact, t, q, u, tr->rates, tr->rates + s->coordinates);
@@ -177,7 +178,7 @@ ric_status gap_acceleration(ric_trajectory *tr, size_t obstacle, double *acceler
   return read_acceleration(tr, f->time, f->q, f->u, obstacle, acceleration, error);
 }
 
-/* Rates of the state moved along its present rates for a short time. */
+/* Rates of the state after a short time along its current rates. */
 static ric_status find_rates_after(ric_trajectory *tr, double dt, ric_error *error) {
   const ric_flow *f = tr->flow;
   size_t n = tr->system->coordinates, m = tr->system->speeds;
@@ -190,7 +191,7 @@ static ric_status find_rates_after(ric_trajectory *tr, double dt, ric_error *err
   return find_rates(tr, f->time + dt, q, u, error);
 }
 
-/* Adds scale times the acceleration there of every gap that is still a candidate to its `accumulation`. */
+/* Adds scale times the acceleration of the gap to the `accumulation` of every remaining candidate. */
 static ric_status add_jerks(ric_trajectory *tr, double dt, double scale, ric_error *error) {
   size_t n = tr->system->coordinates;
   RIC_TRY(find_rates_after(tr, dt, error));
@@ -205,37 +206,37 @@ static ric_status add_jerks(ric_trajectory *tr, double dt, double scale, ric_err
   return RIC_OK;
 }
 
-/* A hit among persistent contacts, or hits that do not couple. */
+/* One impact coupled to persistent contacts, or impacts that do not couple. */
 static bool may_chatter(const ric_trajectory *tr, const impact *c, size_t hits) {
   bool alone = hits == 1 || (!c->coupled && tr->system->model->direction);
   return alone && c->rate < -tr->rate_noise && c->rate_end > tr->rate_noise && tr->options.chatter_tol > 0 &&
          c->restitution < 1;
 }
 
-/* Time that a series lasts under the present acceleration. */
+/* Duration of a series at the current acceleration. */
 static double first_duration(const impact *c, double acceleration) {
   double e = c->restitution;
   return acceleration < 0 ? 2 * c->rate_end / (-acceleration * (1 - e)) : INFINITY;
 }
 
-/* Duration below which a series is summed up. An error of the flow's tolerance in the gap makes one of tolerance / w in
- * the time of landing, w growing with the duration, and summing up costs its third power: so the two meet at the fourth
- * root of the tolerance, and to follow a series any further only costs digits. */
+/* Duration below which a series is summed. An error of the flow's tolerance in the gap causes an error tolerance / w of
+ * the time of impact, where w grows with the duration; the error of summation is its third power. Both are equal at the
+ * fourth root of the tolerance: following a series further would lose digits. */
 static double chatter_limit(const ric_trajectory *tr) {
   double size = tr->locator.noise / tr->noise;
   return fmax(tr->options.chatter_tol, pow(tr->flow->options.tolerance * size, 0.25));
 }
 
-/* Whether a bounce loses no more of its height than the flow's errors can give back: followed, they would keep the
- * series up. */
+/* Whether a bounce loses no more height than errors of the flow can restore: these would sustain the series for ever.
+ */
 static bool is_sustained_by_errors(const ric_trajectory *tr, const impact *c, double acceleration) {
   double e = c->restitution, size = tr->locator.noise / tr->noise;
   double error = 10 * tr->flow->options.tolerance * size;
   return acceleration < 0 && (1 - e * e) * c->rate_end * c->rate_end <= -2 * acceleration * error;
 }
 
-/* Flights of a gap with acceleration -A + J t that begin at the rate w and shrink by e last, in all and to the order
- * after the first, 2 w / (A (1 - e)) (1 + (2/3) (J / A^2) w / (1 - e)). */
+/* The total duration of flights of a gap with acceleration -A + J t, initial rate w and restitution e is, to the second
+ * order, 2 w / (A (1 - e)) (1 + (2/3) (J / A^2) w / (1 - e)). */
 static double estimate_series(const ric_trajectory *tr, const impact *c, double acceleration, double jerk) {
   double e = c->restitution, duration = first_duration(c, acceleration);
   double limit = is_sustained_by_errors(tr, c, acceleration) ? 1 : chatter_limit(tr);
@@ -244,7 +245,8 @@ static double estimate_series(const ric_trajectory *tr, const impact *c, double 
   return duration * (1 + 2 * jerk * c->rate_end / (3 * acceleration * acceleration * (1 - e)));
 }
 
-/* Those whose series is short under the present acceleration; `accumulation` is 0 for them, ready for the jerk. */
+/* Contacts whose series is short at the current acceleration; their `accumulation` is set to 0 before the jerk is
+ * added. */
 static ric_status find_candidates(ric_trajectory *tr, size_t hits, bool *any, ric_error *error) {
   const ric_flow *f = tr->flow;
   bool asked = false;
@@ -266,7 +268,7 @@ static ric_status find_candidates(ric_trajectory *tr, size_t hits, bool *any, ri
   return RIC_OK;
 }
 
-/* Held contacts that the impulse has lifted bear no force in the time ahead. */
+/* Held contacts lifted by the impulse have no force afterwards. */
 static void open_lifted(ric_trajectory *tr, size_t hits) {
   for (size_t i = hits; i < tr->impact_count; i++)
     if (tr->impacts[i].rate_end > tr->rate_noise)
@@ -307,7 +309,7 @@ static ric_status reserve_work(ric_trajectory *tr, ric_error *error) {
   return tr->settling_capacity ? RIC_OK : ric_fail(error, RIC_ENOMEM, "no memory for %zu persistent contacts", count);
 }
 
-/* Moves the coordinates by their rates at speeds that close the gaps in a unit of time: q' is linear in the speeds. */
+/* Moves the coordinates with speeds that close the gaps in a unit of time: q' is linear in the speeds. */
 static ric_status close_gaps(ric_trajectory *tr, const size_t *obstacles, size_t count, ric_error *error) {
   ric_flow *f = tr->flow;
   size_t n = tr->system->coordinates, m = tr->system->speeds;
@@ -329,7 +331,7 @@ ric_status contacts_put_on(ric_trajectory *tr, const size_t *obstacles, size_t c
   return o || !tr->system->model->direction || count == 0 ? RIC_OK : close_gaps(tr, obstacles, count, error);
 }
 
-/* Gap rates of contacts become zero: to rounding, and at coordinates exactly. */
+/* Sets gap rates of contacts to zero: to rounding; for obstacles at coordinates exactly. */
 static ric_status halt(ric_trajectory *tr, const index_list *list, ric_error *error) {
   const ric_system *s = tr->system;
   ric_flow *f = tr->flow;
@@ -355,8 +357,8 @@ ric_status contacts_keep_on(ric_trajectory *tr, bool *moved, ric_error *error) {
   return halt(tr, &tr->held, error);
 }
 
-/* Whether contacts that persist leave the motion a direction. A user's contact that comes when they do not is held by
- * them already. */
+/* Whether sticking contacts leave the motion a free direction. If not, they already hold a further contact of a user
+ * system. */
 static bool is_free(const ric_trajectory *tr) {
   const ric_system *s = tr->system;
   size_t held = 0;
@@ -373,7 +375,7 @@ static ric_status conclude(ric_trajectory *tr, size_t obstacle, bool persists, r
   return contact_opens(tr, obstacle, DEPARTS_SLOWLY, error);
 }
 
-/* Accelerations of the settling contacts with all of them open, then with their forces. */
+/* Accelerations of the undecided contacts with all of them open, then with their forces. */
 static ric_status find_forces(ric_trajectory *tr, ric_error *error) {
   ric_flow *f = tr->flow;
   const index_list *list = &tr->settling;
@@ -386,8 +388,8 @@ static ric_status find_forces(ric_trajectory *tr, ric_error *error) {
   return contact_forces(&tr->law, f->time, f->q, list->items, tr->accelerations, list->count, tr->forces, error);
 }
 
-/* Contacts that press have gap and gap rate zero, and so have those that touch and neither press nor leave: what errors
- * have left of theirs would set the body rocking between its redundant contacts. */
+/* Contacts with a positive force get zero gap and gap rate, as do closed contacts without force and acceleration:
+ * remaining errors would make the body rock between its redundant contacts. */
 static ric_status begin_sticking(ric_trajectory *tr, ric_error *error) {
   tr->closed.count = 0;
   for (size_t i = 0; i < tr->settling.count; i++)

@@ -1,4 +1,4 @@
-/* What happens at an event: contacts that meet, with the impact law, and the tangent vectors there. */
+/* Events: onset of contacts, with the impact law, and the tangent vectors there. */
 #include <math.h>
 #include <stddef.h>
 #include <stdio.h>
@@ -18,7 +18,7 @@ const char *ric_event_name(ric_event_kind kind) {
   return (unsigned)kind < RIC_EVENT_KINDS ? names[kind] : "unknown";
 }
 
-/* Tangent vectors of a trajectory where contacts meet. */
+/* Tangent vectors of a trajectory at the onset of contacts. */
 
 void impact_tangents_clear(impact_tangents *c) {
   tangent_jump_clear(&c->jump);
@@ -66,7 +66,7 @@ void impact_tangents_hold(ric_trajectory *tr, size_t obstacle) {
   const tangents *d = &tr->flow->tangent;
   if (!carries(tr))
     return;
-  if (!o) { /* no way to tell the directions that it leaves from the one that it takes */
+  if (!o) { /* the held direction cannot be separated from the free ones */
     impact_tangents_lose(tr, obstacle, tr->flow->time, RIC_SALTATION_NOT_DIFFERENTIABLE);
     return;
   }
@@ -77,7 +77,7 @@ void impact_tangents_hold(ric_trajectory *tr, size_t obstacle) {
 ric_status ric_trajectory_carry(ric_trajectory *tr, size_t columns, const double *dq, const double *du,
                                 ric_error *error) {
   if (!tr->started)
-    return ric_fail(error, RIC_EINVAL, "the trajectory has no start");
+    return ric_fail(error, RIC_EINVAL, "the trajectory has not been started");
   RIC_TRY(ric_flow_carry(tr->flow, columns, dq, du, error));
   tr->tangents.kind = RIC_SALTATION_DIFFERENTIABLE;
   ric_status status = columns > 0 ? reserve_tangents(tr, columns, error) : RIC_OK;
@@ -111,7 +111,7 @@ void impact_tangents_mark(ric_trajectory *tr) {
   memcpy(tr->tangents.contact_before, f->contact, tr->system->obstacle_count);
 }
 
-/* The contacts of tr->impacts that push together: one that is hit, and the persistent ones that it has reached. */
+/* The contacts of tr->impacts that act together: one impact, and the persistent contacts coupled to it. */
 static ric_status gather_group(ric_trajectory *tr, size_t which, size_t hits, jump_group *group, ric_error *error) {
   impact_tangents *c = &tr->tangents;
   c->group.count = 0;
@@ -136,8 +136,8 @@ static ric_status gather_group(ric_trajectory *tr, size_t which, size_t hits, ju
   return RIC_OK;
 }
 
-/* Takes tangent vectors through one impact; the contacts that follow upon it are those of the flow, but for impacts
- * that are still to come. */
+/* Propagates tangent vectors through one impact; the contact states after it are those of the flow, except for impacts
+ * still to come. */
 static ric_status pass(ric_trajectory *tr, size_t which, size_t hits, bool last, const tangents *d, ric_error *error) {
   impact_tangents *c = &tr->tangents;
   size_t n = tr->system->coordinates, obstacle = tr->impacts[which].obstacle;
@@ -189,7 +189,7 @@ ric_status impact_tangents_jump(ric_trajectory *tr, size_t hits, ric_error *erro
   RIC_TRY(pass_all(tr, hits, false, d, error));
   if (hits > 1 && !tangent_jumps_agree(d->q, other.q, size))
     impact_tangents_lose(tr, tr->impacts[0].obstacle, tr->flow->time, RIC_SALTATION_NOT_DIFFERENTIABLE);
-  /* Contacts that the impacts have closed leave no more of their directions than rounding, which is not to be kept. */
+  /* Components along contacts closed by the impacts are rounding; they are set to zero. */
   for (size_t i = 0; tr->system->obstacles && i < tr->held.count; i++)
     impact_tangents_hold(tr, tr->held.items[i]);
   return RIC_OK;
@@ -197,13 +197,13 @@ ric_status impact_tangents_jump(ric_trajectory *tr, size_t hits, ric_error *erro
 
 ric_status impact_tangents_end(ric_trajectory *tr, char *reason, size_t room, ric_error *error) {
   bool grazes = tr->tangents.kind == RIC_SALTATION_GRAZING;
-  snprintf(reason, room, "at t = %g tangent vectors have no way through %s obstacle %zu", tr->tangents.time,
-           grazes ? "the grazing contact of" : "impacts at one time, one of them on", tr->tangents.obstacle);
+  snprintf(reason, room, "at t = %g tangent vectors are undefined at %s obstacle %zu", tr->tangents.time,
+           grazes ? "the grazing contact of" : "simultaneous impacts, one of them on", tr->tangents.obstacle);
   tr->tangents.kind = RIC_SALTATION_DIFFERENTIABLE;
   return ric_flow_carry(tr->flow, 0, NULL, NULL, error);
 }
 
-/* What happens when contacts meet: at the start of a run, and at the first roots of a step. */
+/* Onset of contacts: at the start of a run, and at the first roots of a step. */
 
 static ric_status add_impact(ric_trajectory *tr, size_t obstacle, double restitution, ric_error *error) {
   impact *impacts = list_room(tr->impacts, tr->impact_count, &tr->impact_capacity, sizeof *impacts);
@@ -218,7 +218,7 @@ static double restitution_of(const ric_trajectory *tr, size_t obstacle) {
   return tr->system->model->restitution(tr->system, obstacle);
 }
 
-/* Whether impulses and forces reach from contact to contact. */
+/* Whether impulses and forces of contacts couple. */
 static bool contacts_couple(const ric_trajectory *tr) {
   return !tr->system->uncoupled && tr->system->model->direction;
 }
@@ -231,7 +231,7 @@ static double rate_now(const ric_trajectory *tr, size_t obstacle) {
   return ric_system_gap_rate(tr->system, obstacle, tr->flow->time, tr->flow->q, tr->flow->u);
 }
 
-/* Which way a contact at zero goes: by its rate, or by its acceleration where the rate is zero. */
+/* Whether a contact at zero closes: by its rate, or by its acceleration if the rate is zero. */
 static ric_status is_closing(ric_trajectory *tr, size_t obstacle, bool *in, bool *fast, ric_error *error) {
   double rate = rate_now(tr, obstacle), acceleration;
   *fast = fabs(rate) > tr->rate_noise;
@@ -243,7 +243,7 @@ static ric_status is_closing(ric_trajectory *tr, size_t obstacle, bool *in, bool
   return RIC_OK;
 }
 
-/* A compliant contact at zero presses or is open from now on. */
+/* Sets a compliant contact at zero pressed or open. */
 static ric_status set_compliant(ric_trajectory *tr, size_t obstacle, ric_error *error) {
   bool in, fast;
   RIC_TRY(is_closing(tr, obstacle, &in, &fast, error));
@@ -251,11 +251,11 @@ static ric_status set_compliant(ric_trajectory *tr, size_t obstacle, ric_error *
   return in ? contact_presses(tr, obstacle, how, error) : contact_opens(tr, obstacle, how, error);
 }
 
-/* A compliant contact begins or ends to press. */
+/* Onset or end of a compliant contact. */
 static ric_status switch_contact(ric_trajectory *tr, size_t obstacle, ric_error *error) {
   contact_state before = flow_contact(tr->flow, obstacle);
   RIC_TRY(set_compliant(tr, obstacle, error));
-  if (flow_contact(tr->flow, obstacle) == before) /* it only touched */
+  if (flow_contact(tr->flow, obstacle) == before) /* it only grazed */
     return RIC_OK;
   ric_event event = event_of(tr, before == CONTACT_PRESSED ? RIC_EVENT_PARTING : RIC_EVENT_CONTACT, obstacle);
   event.gap_rate = event.gap_rate_end = rate_now(tr, obstacle);
@@ -263,8 +263,8 @@ static ric_status switch_contact(ric_trajectory *tr, size_t obstacle, ric_error 
   return RIC_OK;
 }
 
-/* Depth to which a contact that comes in slowly would go, by its acceleration; -INFINITY when it does not turn around
- * or comes in too fast to ask. */
+/* Penetration depth of a slowly closing contact by its acceleration; -INFINITY if it does not turn around or closes too
+ * fast. */
 static ric_status depth_of(ric_trajectory *tr, size_t obstacle, double rate, double *depth, ric_error *error) {
   double acceleration, tol = tr->options.grazing_tol;
   *depth = -INFINITY;
@@ -276,9 +276,9 @@ static ric_status depth_of(ric_trajectory *tr, size_t obstacle, double rate, dou
   return RIC_OK;
 }
 
-/* Takes out of the impulses what the series of impacts that is summed up would have given back. */
+/* Removes from the impulses the restitution of the series of impacts that is summed. */
 static ric_status sum_series(ric_trajectory *tr, size_t hits, ric_error *error) {
-  bool all = hits == 1 && !isnan(tr->impacts[0].accumulation); /* with the persistent contacts that share in it */
+  bool all = hits == 1 && !isnan(tr->impacts[0].accumulation); /* with the persistent contacts coupled to it */
   for (size_t i = 0; i < tr->impact_count; i++) {
     impact *c = &tr->impacts[i];
     double e = all ? tr->impacts[0].restitution : c->restitution;
@@ -288,8 +288,8 @@ static ric_status sum_series(ric_trajectory *tr, size_t hits, ric_error *error) 
   return RIC_OK;
 }
 
-/* Whether a contact has no more of a rate than from a fall through the noise of its gap: coming in, it has been pressed
- * on already. */
+/* Whether the gap rate of a contact is no larger than after a fall through the noise of its gap: such a closing contact
+ * counts as pressed already. */
 static ric_status falls_through_noise(ric_trajectory *tr, size_t obstacle, double rate, bool *pressed,
                                       ric_error *error) {
   double acceleration, noise = tr->locator.noise;
@@ -301,8 +301,8 @@ static ric_status falls_through_noise(ric_trajectory *tr, size_t obstacle, doubl
   return RIC_OK;
 }
 
-/* Which contacts leave their obstacles. Flights that stay within the noise of the gap do not: followed, the noise would
- * keep them up. */
+/* Which contacts leave their obstacles. Flights within the noise of the gap do not count: the noise would sustain them.
+ */
 static ric_status find_leaving(ric_trajectory *tr, ric_error *error) {
   for (size_t i = 0; i < tr->impact_count; i++) {
     impact *c = &tr->impacts[i];
@@ -315,7 +315,7 @@ static ric_status find_leaving(ric_trajectory *tr, ric_error *error) {
   return RIC_OK;
 }
 
-/* An impact's aftermath: leave, settle, or be taken for at rest. */
+/* After an impact: the contact leaves, sticks, or is undecided. */
 static ric_status aftermath(ric_trajectory *tr, const impact *c, ric_error *error) {
   if (c->leaves)
     return contact_opens(tr, c->obstacle, DEPARTS_FAST, error);
@@ -344,13 +344,13 @@ static void show_impact(ric_trajectory *tr, const impact *c, size_t hits, double
   trajectory_show(tr, &event);
 }
 
-/* More than rounding is left of its gap. */
+/* Whether its gap exceeds rounding. */
 static bool is_off(const ric_trajectory *tr, size_t obstacle) {
   return fabs(gap_now(tr, obstacle)) > tr->noise / 100;
 }
 
-/* Puts those that come in onto their obstacles; where contacts couple all of them together: one alone would lift the
- * others, and what they fall from there would keep them moving. */
+/* Projects closing contacts onto their obstacles; coupled ones all together: one alone would lift the others, whose
+ * fall would keep them moving. */
 static ric_status project_onto_obstacles(ric_trajectory *tr, ric_error *error) {
   bool couple = contacts_couple(tr), any = false;
   tr->closed.count = 0;
@@ -364,7 +364,7 @@ static ric_status project_onto_obstacles(ric_trajectory *tr, ric_error *error) {
   return contacts_put_on(tr, tr->closed.items, tr->closed.count, error);
 }
 
-/* A contact of the list: an impact, or a closed contact that shares in the impulses. */
+/* A contact of the list: an impact, or a closed contact coupled to one. */
 static ric_status conclude_impact(ric_trajectory *tr, impact *c, size_t hits, double depth, ric_error *error) {
   if (hits > 0 && (c->rate < -tr->rate_noise || c->impulse > 0))
     show_impact(tr, c, hits, depth);
@@ -389,7 +389,8 @@ static ric_status collide(ric_trajectory *tr, size_t hits, ric_error *error) {
   return RIC_OK;
 }
 
-/* A root of an open rigid contact: an impact, a touch with rate zero, or noise on its way out. */
+/* Classifies a root of an open rigid contact: an impact, a grazing contact with rate zero, or noise of an opening
+ * contact. */
 static ric_status classify_root(ric_trajectory *tr, size_t obstacle, ric_error *error) {
   double rate = rate_now(tr, obstacle);
   bool pressed;
@@ -405,7 +406,7 @@ static ric_status classify_root(ric_trajectory *tr, size_t obstacle, ric_error *
   event.gap_rate = event.gap_rate_end = rate;
   event.depth = gap_now(tr, obstacle);
   trajectory_show(tr, &event);
-  /* leaving, it has a root again only below where it is now, so that time goes on */
+  /* opening: its next root must lie below the current value, so that time advances */
   return rate > tr->rate_noise ? contact_opens(tr, obstacle, DEPARTS_SLOWLY, error)
                                : index_list_add(&tr->settling, obstacle, error);
 }
@@ -417,7 +418,7 @@ static bool takes_part(const ric_trajectory *tr, size_t obstacle) {
   return listed;
 }
 
-/* Contacts that have departed from zero without a rate and have not left it. */
+/* Contacts that departed from zero without a rate and are still at zero. */
 static ric_status add_touching(ric_trajectory *tr, ric_error *error) {
   for (size_t i = 0; i < tr->departing.count; i++) {
     size_t obstacle = tr->departing.items[i];
@@ -432,7 +433,7 @@ static ric_status add_touching(ric_trajectory *tr, ric_error *error) {
   return RIC_OK;
 }
 
-/* Where contacts couple, all that are closed have their part in what happens, with no rate to give back. */
+/* If contacts couple, all closed contacts take part, with restitution 0. */
 static ric_status add_closed(ric_trajectory *tr, ric_error *error) {
   for (size_t i = 0; i < tr->settling.count; i++)
     RIC_TRY(add_impact(tr, tr->settling.items[i], 0, error));
@@ -443,7 +444,7 @@ static ric_status add_closed(ric_trajectory *tr, ric_error *error) {
   return add_touching(tr, error);
 }
 
-/* Where they do not, impacts change the forces of those that persist. */
+/* If they do not couple, impacts change the forces of persistent contacts. */
 static ric_status add_held(ric_trajectory *tr, ric_error *error) {
   for (size_t i = 0; i < tr->held.count; i++)
     if (contact_persists(tr, tr->held.items[i]))
@@ -451,7 +452,7 @@ static ric_status add_held(ric_trajectory *tr, ric_error *error) {
   return RIC_OK;
 }
 
-/* Impacts are gathered in tr->impacts; rests and touches in tr->settling. */
+/* Impacts are collected in tr->impacts; sticking and grazing contacts in tr->settling. */
 static ric_status resolve(ric_trajectory *tr, ric_error *error) {
   size_t hits = tr->impact_count;
   if (contacts_couple(tr) && hits + tr->settling.count > 0)

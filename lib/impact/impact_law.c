@@ -7,7 +7,7 @@
 
 static const double coupling_tol = 1e-13; /* of g_i^T M^-1 g_j against the diagonal: below it, rounding */
 
-/* Accelerations count as zero up to so much of the terms they are the sum of: those of users' gaps are differences. */
+/* Accelerations below this fraction of their terms count as zero: those of user gaps are differences. */
 static const double acceleration_tol = 1e-7;
 
 ric_status impact_solver_init(impact_solver *solver, const ric_system *system, ric_error *error) {
@@ -35,7 +35,7 @@ void impact_solver_clear(impact_solver *solver) {
   *solver = (impact_solver){0};
 }
 
-/* Room for directions, and for their complementarity problem. */
+/* Makes room for directions, and for their complementarity problem. */
 ric_status impact_solver_reserve(impact_solver *s, size_t count, ric_error *error) {
   size_t m = s->system->speeds;
   if (count <= s->capacity || !s->system->model->direction)
@@ -70,7 +70,7 @@ static ric_status find_direction(impact_solver *s, size_t slot, size_t obstacle,
   return trouble ? callback_error(error, t, obstacle, trouble) : RIC_OK;
 }
 
-/* g_a . w_b over the speeds that both reach. */
+/* g_a . w_b over the common speeds. */
 static double product(const contact_direction *a, const contact_direction *b) {
   size_t from = a->first > b->first ? a->first : b->first;
   size_t a_end = a->first + a->count, b_end = b->first + b->count, to = a_end < b_end ? a_end : b_end;
@@ -91,13 +91,13 @@ static ric_status read_rate(const impact_solver *s, double t, const double *q, c
   return trouble ? callback_error(error, t, obstacle, trouble) : RIC_OK;
 }
 
-/* Minus the work of an impulse on the speeds before and after, on their mean. The motion of the gap itself, `offset`,
- * is not the system's. */
+/* Minus the work of an impulse on the speeds before and after, on their mean. The motion of the obstacle, `offset`, is
+ * excluded. */
 static double work_lost(const impact *c, double offset) {
   return c->impulse * (offset - (c->rate + c->rate_end) / 2);
 }
 
-/* [FN97] (2.9) for one contact alone. */
+/* [FN97] (2.9) for a single contact. */
 static ric_status apply_alone(impact_solver *s, double t, const double *q, double *u, impact *c, ric_error *error) {
   double e = c->restitution;
   RIC_TRY(find_direction(s, 0, c->obstacle, t, q, error));
@@ -165,7 +165,7 @@ static ric_status apply_map(impact_solver *s, double t, double *x, impact *c, ri
   c->impulse = c->rate < 0 ? NAN : 0;
   c->loss = 0;
   c->coupled = false;
-  if (!(c->rate < 0)) /* an impact before it has turned this one around */
+  if (!(c->rate < 0)) /* a previous impact has reversed this gap rate */
     return RIC_OK;
   const char *trouble = system->model->impact(system, c->obstacle, t, x, s->after);
   if (trouble)
@@ -176,7 +176,7 @@ static ric_status apply_map(impact_solver *s, double t, double *x, impact *c, ri
   return read_rate(s, t, x, NULL, c->obstacle, &c->rate_end, error);
 }
 
-/* Maps in order of the obstacles; coupled when one changes the rate that another begins with. */
+/* Maps in order of the obstacles; coupled if one changes the initial rate of another. */
 static ric_status apply_maps(impact_solver *s, double t, double *x, impact *contacts, size_t count, ric_error *error) {
   for (size_t i = 0; i < count; i++)
     RIC_TRY(read_rate(s, t, x, NULL, contacts[i].obstacle, &contacts[i].rate_end, error));
@@ -211,7 +211,7 @@ ric_status impact_stick(impact_solver *solver, double t, double *q, double *u, i
     contact->impulse -= part * contact->impulse;
     contact->rate_end -= part * (contact->rate_end - contact->rate);
     if (contact->rate < 0)
-      contact->rate_end = 0; /* the hit, but for rounding */
+      contact->rate_end = 0; /* the impact, to rounding */
     contact->loss = work_lost(contact, solver->directions[0].offset);
   } else { /* the gap rate is zero between the states before and after */
     double back = left / (left - contact->rate), energy = ric_system_energy(solver->system, t, q, NULL);
@@ -223,7 +223,7 @@ ric_status impact_stick(impact_solver *solver, double t, double *q, double *u, i
   return RIC_OK;
 }
 
-/* The equations A p = -(1 + e) h' of contacts [count] whose directions follow each other in the solver. */
+/* The equations A p = -(1 + e) h' of contacts [count] with consecutive directions in the solver. */
 static ric_status reflect_together(impact_solver *s, double t, const double *q, double *u, const size_t *obstacles,
                                    const double *restitution, size_t count, double *loss, ric_error *error) {
   for (size_t i = 0; i < count; i++) {

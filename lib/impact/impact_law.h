@@ -1,8 +1,8 @@
-/* Impacts: how speeds jump at one time, for one contact or several: internal to the library.
+/* The impact law: jumps of speeds at one time, for one contact or several. Internal to the library.
  *
  * Newton's law h'+ = -e h'- with an impulse p >= 0 along the gap's gradient, [FN97] (2.9). Contacts that do not couple
- * (g_i^T M^-1 g_j = 0) follow one by one, in any order. Coupled ones, and persistent contacts that an impulse reaches,
- * together solve Moreau's form of the law,
+ * (g_i^T M^-1 g_j = 0) are treated one by one, in any order. Coupled ones, and persistent contacts coupled to an
+ * impact, together satisfy Moreau's form of the law,
  *
  *   0 <= p  _|_  A p + (1 + e) h'- >= 0,   A_ij = g_i^T M^-1 g_j,
  *
@@ -21,11 +21,11 @@ typedef struct impact {
   double impulse;
   double loss;         /* of energy; NaN where unknown */
   bool coupled;        /* with another of the list */
-  bool leaves;         /* set by those who judge the outcome */
+  bool leaves;         /* set by the caller */
   double accumulation; /* time from now at which the series of its impacts ends; NaN: no chatter */
 } impact;
 
-/** Contacts of one time and what their laws need. Grows; solving again for as many contacts allocates nothing. */
+/** Workspace for simultaneous contacts. It grows; solving again for as many contacts allocates nothing. */
 typedef struct impact_solver {
   const ric_system *system;
   complementarity_work lcp;
@@ -39,30 +39,30 @@ typedef struct impact_solver {
 ric_status impact_solver_init(impact_solver *solver, const ric_system *system, ric_error *error);
 void impact_solver_clear(impact_solver *solver);
 
-/** Makes room for `count` contacts at one time, so that as many need no memory later. */
+/** Makes room for `count` simultaneous contacts, so that as many allocate nothing later. */
 ric_status impact_solver_reserve(impact_solver *solver, size_t count, ric_error *error);
 
-/** Applies the law to contacts [count] with their `obstacle` and `restitution` given; sets all else in them.
+/** Applies the law to contacts [count] with their `obstacle` and `restitution` given; sets all other fields.
  *  @param q, u  [n], [m] state; u changes (q for first-order systems) */
 ric_status impact_apply(impact_solver *solver, double t, double *q, double *u, impact *contacts, size_t count,
                         ric_error *error);
 
-/** After impact_apply for one hit, alone or with persistent contacts that it coupled to: takes away what its
- * restitution has added to the impulse of `contact`, so that the hit's rate ends at zero. By (2.9) and Moreau's form,
- * impulses are proportional to 1 + e. Call it for every contact of the list.
+/** After impact_apply for one impact, alone or with persistent contacts coupled to it: removes the part of restitution
+ * from the impulse of `contact`, so that the final gap rate of the impact is zero. By (2.9) and Moreau's form, impulses
+ * are proportional to 1 + e. Call it for every contact of the list.
  *  @param restitution  of the hit */
 ric_status impact_stick(impact_solver *solver, double t, double *q, double *u, impact *contact, double restitution,
                         ric_error *error);
 
-/** Turns the gap rates of contacts into -e times themselves by impulses of either sign, all together where they couple:
- * halts contacts that persist, and is the law itself once it is known which contacts push. Not for first-order systems.
+/** Multiplies the gap rates of contacts by -e through impulses of either sign, all together if they couple: stops
+ * contacts that stick, and is the impact law if the active contacts are known. Not for first-order systems.
  *  @param restitution  [count]; NULL: zeros
  *  @param loss  of energy, set; may be NULL */
 ric_status impact_reflect(impact_solver *solver, double t, const double *q, double *u, const size_t *obstacles,
                           const double *restitution, size_t count, double *loss, ric_error *error);
 
-/** Adds to u [m] the speeds with which the gaps of contacts [count] would be closed after a unit of time, the least in
- *  kinetic energy; not for first-order systems. Of contacts that depend on each other the first ones decide. */
+/** Adds to u [m] the speeds of least kinetic energy that close the gaps of contacts [count] in a unit of time; not for
+ *  first-order systems. Of dependent contacts the first ones decide. */
 ric_status impact_close_in(impact_solver *solver, double t, const double *q, double *u, const size_t *obstacles,
                            size_t count, ric_error *error);
 
@@ -71,7 +71,7 @@ ric_status impact_close_in(impact_solver *solver, double t, const double *q, dou
  *   0 <= lambda  _|_  A lambda + b >= 0,   b = accelerations of the gaps without these forces.
  *
  *  @param obstacles  [count]
- *  @param b  [count] becomes A lambda + b, zero where that is no more than errors of the accelerations
+ *  @param b  [count] becomes A lambda + b, zero where it is below the errors of the accelerations
  *  @param lambda  [count], set */
 ric_status contact_forces(impact_solver *solver, double t, const double *q, const size_t *obstacles, double *b,
                           size_t count, double *lambda, ric_error *error);

@@ -1,4 +1,4 @@
-/* Gaps and forces of contacts as polynomials along a step, and where they are zero first. */
+/* Gaps and forces of contacts as polynomials along a step, and their first zeros. */
 #include "locate.h"
 
 #include <stdlib.h>
@@ -70,7 +70,7 @@ static const char *value_at(const gap_reader *r, size_t obstacle, contact_functi
   return s->model->gap(s, obstacle, t, q, value);
 }
 
-/* The size of the last terms, and of what is missed where the interpolant was not made to be right. */
+/* Error estimate: the last terms, and the deviation at the points that are not nodes. */
 static double residual_of(const double *a, const double *c, const double *value, double tolerance) {
   double size = 1, missed = fabs(a[GAP_DEGREE]) + fabs(a[GAP_DEGREE - 1]);
   for (int j = 0; j < GAP_NODES; j++)
@@ -128,7 +128,7 @@ const char *gap_read(gap_reader *reader, const ric_segment *piece, size_t obstac
 }
 
 enum {
-  MOST_PARTS = 1 << 17, /* into which a step is cut where a function is hard to interpolate */
+  MOST_PARTS = 1 << 17, /* largest number of parts of a step for a function that is hard to interpolate */
   HALVINGS = 40,
   FEW_COORDINATES = 4
 };
@@ -165,11 +165,11 @@ static ric_status add_root(contact_root_list *list, contact_root h, ric_error *e
   return RIC_OK;
 }
 
-/* One step being looked at. */
+/* The scan of one step. */
 typedef struct scan {
   locator *l;
   ric_flow *flow;
-  double together; /* positions this close are one event */
+  double together; /* positions closer than this are one event */
   ric_error *error;
 } scan;
 
@@ -181,8 +181,8 @@ static ric_status found_root(scan *s, size_t obstacle, double x) {
   return add_root(&s->l->roots, (contact_root){.obstacle = obstacle, .x = x, .depth = NAN}, s->error);
 }
 
-/* Cuts a part off behind the first root so far, or the horizon: what comes later is of no interest, and on the short
- * interval that is left the cheap bounds exclude nearly every other contact. @returns false when nothing is left. */
+/* Cuts a part at the first root found so far, or at the horizon: later roots are irrelevant, and on the short remaining
+ * interval cheap bounds exclude nearly every other contact. @returns false if nothing remains. */
 static bool shorten(const scan *s, gap_part *part) {
   double end = fmin(s->l->first + s->together, s->l->horizon);
   double y = (end - part->from) / (part->to - part->from), power = 1;
@@ -194,7 +194,7 @@ static bool shorten(const scan *s, gap_part *part) {
   return y > 0;
 }
 
-/* Whether the slope at the start stands out from the rounding of the coefficients. */
+/* Whether the slope at the start exceeds the rounding of the coefficients. */
 static bool has_slope(const double *c, int degree) {
   double size = 0;
   for (int j = 0; j <= degree; j++)
@@ -215,8 +215,8 @@ static int first_root(const scan *s, size_t obstacle, const gap_part *part, depa
   return ric_poly_first_root(shifted, part->degree, y);
 }
 
-/* A cheap look at a gap, which tells most of those that stay away, or leave, and most that fall straight to zero.
- * @returns whether that is all there is to say */
+/* A cheap test of a gap, which decides for most gaps that stay positive or increase, and for most that decrease to zero
+ * monotonically. @returns whether it decides */
 static bool test_bounds(const scan *s, const gap_part *part, departure from, bool *found, double *y) {
   double tol = s->l->grazing_tol;
   *found = false;
@@ -229,8 +229,8 @@ static bool test_bounds(const scan *s, const gap_part *part, departure from, boo
   return seen != POLY_UNDECIDED;
 }
 
-/* Whether a minimum above zero is one of its own, and not the touch that rounding has made a root: a root behind it is
- * one through which the gap falls. Below zero by rounding alone it has no root. */
+/* Whether a minimum above zero is separate from a root caused by rounding at the same grazing point: a separate root
+ * lies behind it, with the gap decreasing through zero. A gap below zero by rounding only has no root. */
 static bool is_near_miss(const gap_part *part, bool found, double y, double at, double least, double noise) {
   double slope;
   if (!found)
@@ -279,9 +279,9 @@ static ric_status scan_part(scan *s, const ric_segment *piece, size_t obstacle, 
   if (gap_is_resolved(&part, before))
     return find_contact_root(s, obstacle, what, &part, found);
   if (halvings == 0)
-    return ric_fail(s->error, RIC_ELIMIT, "at t = %.10g, obstacle %zu: its %s varies too fast to be followed",
+    return ric_fail(s->error, RIC_ELIMIT, "at t = %.10g, obstacle %zu: its %s varies too fast to be resolved",
                     piece->start + from * piece->length, obstacle, what == WATCH_FORCE ? "force" : "gap");
-  if (s->l->parts++ > MOST_PARTS && from > 0) { /* a step of so much is too long: what has been seen will do */
+  if (s->l->parts++ > MOST_PARTS && from > 0) { /* the step is too long: stop at what has been scanned */
     s->l->horizon = from;
     return RIC_OK;
   }
@@ -311,8 +311,8 @@ static ric_status reserve_reader(locator *l, size_t width, ric_error *error) {
   return l->width ? RIC_OK : ric_fail(error, RIC_ENOMEM, "no memory for bounds of %zu coordinates", width);
 }
 
-/* Obstacles at the coordinates of a piece. Bounds of all coordinates exclude nearly all of many; they take as long as
- * the first look at each of a few. */
+/* Obstacles at the coordinates of a piece. Bounds of all coordinates exclude nearly all of many obstacles; for few
+ * obstacles they cost as much as the first test of each. */
 static ric_status scan_coordinates(scan *s, const ric_segment *piece) {
   const ric_system *system = s->flow->system;
   locator *l = s->l;
@@ -352,7 +352,7 @@ static int by_position(const void *a, const void *b) {
   return x < y ? -1 : x > y ? 1 : by_obstacle(a, b);
 }
 
-/* Drops what comes later than the first root, which was not known while the pieces were looked at. */
+/* Drops entries later than the first root, which was not known while the pieces were scanned. */
 static void keep(contact_root_list *list, double latest) {
   size_t kept = 0;
   for (size_t i = 0; i < list->count; i++)

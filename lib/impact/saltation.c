@@ -1,4 +1,4 @@
-/* Saltation matrices: how tangent vectors go through an impact. */
+/* Saltation matrices: the jump of tangent vectors at an impact. */
 #include "saltation.h"
 
 #include <stdlib.h>
@@ -37,7 +37,7 @@ static ric_status callback_error(ric_error *error, double t, size_t obstacle, co
   return ric_fail(error, RIC_ECALLBACK, "at t = %g, obstacle %zu: %s", t, obstacle, trouble);
 }
 
-/* One impact being passed. */
+/* One impact to be passed. */
 typedef struct passage {
   tangent_jump *jump;
   double t;
@@ -47,7 +47,7 @@ typedef struct passage {
 
 /* --- impact map -------------------------------------------------------------------------------------------------- */
 
-/* The map of a first-order system in place; one that sticks goes as far as the gap rate is zero. */
+/* The map of a first-order system in place; if the contact sticks, up to a gap rate of zero. */
 static const char *map_state(const passage *p, double t, double *x) {
   const ric_system *s = p->jump->system;
   size_t obstacle = p->group->obstacles[0];
@@ -70,7 +70,7 @@ static const char *map(const passage *p, double t, double *q, double *u) {
   if (!p->jump->system->model->direction)
     return map_state(p, t, q);
   ric_status status = impact_reflect(p->jump->law, t, q, u, g->obstacles, g->restitution, g->count, NULL, p->error);
-  return status == RIC_OK ? NULL : "the impact law failed beside the impact";
+  return status == RIC_OK ? NULL : "the impact law failed at a state near the impact";
 }
 
 static const char *map_on_line(void *user, double x, double *value) {
@@ -84,7 +84,7 @@ static const char *map_on_line(void *user, double x, double *value) {
   return trouble;
 }
 
-/* The map of a first-order system means something where the gap closes: there the step stays. */
+/* The map of a first-order system is defined for closing gaps only: shortens the step to stay there. */
 static const char *keep_closing(const passage *p, double *step) {
   const tangent_jump *j = p->jump;
   const ric_system *s = j->system;
@@ -106,7 +106,7 @@ static const char *keep_closing(const passage *p, double *step) {
 static const char *differentiate(passage *p) {
   tangent_jump *j = p->jump;
   size_t n = j->system->coordinates, size = n + j->system->speeds;
-  if (j->system->obstacles) /* the law is linear in the speeds, and depends on nothing else */
+  if (j->system->obstacles) /* the law is linear in the speeds and depends on nothing else */
     return map(p, p->t, j->line, j->line + n);
   double place = fmax(largest(j->line, n), fabs(j->in_time));
   double step = system_tangent_step(place, largest(j->line + n, size - n), largest(j->state + n, size - n));
@@ -127,7 +127,7 @@ static ric_status read_rates(const passage *p, const unsigned char *contact, con
   return trouble ? callback_error(p->error, p->t, p->group->obstacles[0], trouble) : RIC_OK;
 }
 
-/* Sets `shift` [columns], the times by which neighbouring motions are late. */
+/* Sets `shift` [columns], the delays of neighbouring motions. */
 static ric_status find_shifts(const passage *p, const double *q, const double *u, const tangents *d, double grazing_tol,
                               ric_saltation_kind *kind) {
   const tangent_jump *j = p->jump;
@@ -212,7 +212,7 @@ ric_status tangent_jump_apply(tangent_jump *j, double t, const jump_group *group
   keep_state(j, q, u);
   for (size_t k = 0; k < d->columns; k++)
     RIC_TRY(pass_column(&p, d, k));
-  const char *trouble = map(&p, t, q, u); /* last: maps remember their restitution */
+  const char *trouble = map(&p, t, q, u); /* last, because maps store their restitution */
   if (trouble)
     return callback_error(error, t, group->obstacles[0], trouble);
   memmove(contact, after, j->system->obstacle_count); /* they may be the same */
@@ -230,7 +230,7 @@ bool tangent_jumps_agree(const double *a, const double *b, size_t size) {
   return most <= 1e-9 * scale;
 }
 
-enum { MOST_ROUNDS = 1000 /* of coupled contacts that hit each other back */ };
+enum { MOST_ROUNDS = 1000 /* of coupled contacts that cause each other's impacts */ };
 
 const char *ric_saltation_name(ric_saltation_kind kind) {
   static const char *const names[] = {
@@ -241,7 +241,7 @@ const char *ric_saltation_name(ric_saltation_kind kind) {
   return (unsigned)kind < RIC_SALTATION_KINDS ? names[kind] : "unknown kind";
 }
 
-/* Impacts of one time, in an order. */
+/* Simultaneous impacts in a given order. */
 typedef struct sequence {
   const ric_system *system;
   double t, grazing_tol;
@@ -251,7 +251,7 @@ typedef struct sequence {
   tangent_jump jump;
   impact_solver law;
   double *state;          /* [n + m] between impacts */
-  unsigned char *contact; /* [obstacles] open, or pressed where they comply */
+  unsigned char *contact; /* [obstacles] open, or pressed if compliant */
   ric_saltation_kind kind;
 } sequence;
 
@@ -284,7 +284,7 @@ static ric_status hit(sequence *s, size_t obstacle, const tangents *d, ric_error
                             &s->kind, error);
 }
 
-/* One round through the obstacles. @param any  whether one of them was hit */
+/* One round through the obstacles. @param any  whether there was an impact */
 static ric_status apply_round(sequence *s, bool backwards, bool first, const tangents *d, bool *any, ric_error *error) {
   size_t n = s->system->coordinates;
   *any = false;
@@ -293,7 +293,7 @@ static ric_status apply_round(sequence *s, bool backwards, bool first, const tan
     double rate = ric_system_gap_rate(s->system, obstacle, s->t, s->state, s->state + n);
     if (isnan(rate))
       return ric_fail(error, RIC_ECALLBACK, "the gap rate of obstacle %zu could not be evaluated", obstacle);
-    if (first ? i > 0 && rate >= 0 : rate >= -s->grazing_tol) /* another one has turned it around */
+    if (first ? i > 0 && rate >= 0 : rate >= -s->grazing_tol) /* another impact has reversed it */
       continue;
     *any = true;
     RIC_TRY(hit(s, obstacle, d, error));
@@ -330,7 +330,8 @@ static ric_status check_sequence(const sequence *s, ric_error *error) {
     if (obstacle >= s->system->obstacle_count)
       return ric_fail(error, RIC_EINVAL, "obstacle %zu, expected one of %zu", obstacle, s->system->obstacle_count);
     if (system_complies(s->system, obstacle))
-      return ric_fail(error, RIC_EINVAL, "obstacle %zu is compliant: nothing jumps there", obstacle);
+      return ric_fail(error, RIC_EINVAL, "obstacle %zu is compliant, expected a rigid one: it has no impacts",
+                      obstacle);
     double rate = ric_system_gap_rate(s->system, obstacle, s->t, s->q, s->u);
     if (!(rate < 0))
       return ric_fail(error, RIC_EINVAL, "the gap rate of obstacle %zu is %g, expected below 0", obstacle, rate);

@@ -1,16 +1,16 @@
-/* How tangent vectors go through one impact: internal to the impact room. See ricochet/saltation.h for the formula. */
+/* The jump of tangent vectors at one impact: internal to the room. See ricochet/saltation.h for the formula. */
 #ifndef RICOCHET_INTERNAL_SALTATION_H
 #define RICOCHET_INTERNAL_SALTATION_H
 
 #include "impact_law.h"
 #include "ricochet/saltation.h"
 
-/** An impact, and the persistent contacts that push with it. */
+/** An impact, and the persistent contacts coupled to it. */
 typedef struct jump_group {
-  const size_t *obstacles;   /* [count] the one that is hit first */
+  const size_t *obstacles;   /* [count] the impact comes first */
   const double *restitution; /* [count] */
   size_t count;
-  bool sticks; /* impact maps: the series of impacts that begins here is summed up */
+  bool sticks; /* impact maps: the series of impacts that begins here is summed */
 } jump_group;
 
 /** Workspace for a number of tangent vectors. */
@@ -19,7 +19,7 @@ typedef struct tangent_jump {
   impact_solver *law; /* borrowed */
   size_t columns;
   double *rates_before, *rates_after; /* [n + m] */
-  double *line, *point;               /* [n + m] one tangent vector with its shift; a state on its line */
+  double *line, *point;               /* [n + m] one tangent vector with its time shift; a state on its line */
   double *state;                      /* [n + m] before the impact */
   double *derivative;                 /* [n + m] of the map along the line */
   double *work;                       /* [2 (n + m)] */
@@ -31,24 +31,24 @@ ric_status tangent_jump_init(tangent_jump *jump, const ric_system *system, impac
                              ric_error *error);
 void tangent_jump_clear(tangent_jump *jump);
 
-/** Moves a state and tangent vectors through an impact.
+/** Applies an impact to a state and tangent vectors.
  *  @param contact  [obstacles] states of contacts before; set to those after
  *  @param after  states of contacts after
  *  @param q, u  [n], [m] the state, changed
  *  @param d  changed, unless the impact is grazing
  *  @param kind  differentiable or grazing; then nothing is changed
- *  @returns RIC_ECALLBACK, RIC_ENOMEM; RIC_EINVAL when the gap rate is not below zero. */
+ *  @returns RIC_ECALLBACK, RIC_ENOMEM; RIC_EINVAL if the gap rate is not negative. */
 ric_status tangent_jump_apply(tangent_jump *jump, double t, const jump_group *group, double grazing_tol,
                               unsigned char *contact, const unsigned char *after, double *q, double *u,
                               const tangents *d, ric_saltation_kind *kind, ric_error *error);
 
-/** Moves a state and tangent vectors through the impact map alone, off the obstacle or on it, whatever the gap rate.
+/** Applies the impact map alone to a state and tangent vectors, on the obstacle or off it, for any gap rate.
  *  @param d  becomes DG d + G_t in_time
- *  @param in_time  [columns] by how much the time of the impact moves with each of them */
+ *  @param in_time  [columns] derivative of the time of the impact along each of them */
 ric_status tangent_jump_map(tangent_jump *jump, double t, const jump_group *group, double *q, double *u,
                             const tangents *d, const double *in_time, ric_error *error);
 
-/** Whether two orders of impacts have taken numbers [size] to the same place, within 1e-9 of the largest. */
+/** Whether two orders of impacts give the same numbers [size], within 1e-9 of the largest. */
 bool tangent_jumps_agree(const double *a, const double *b, size_t size);
 
 #endif

@@ -20,7 +20,7 @@ static void fill(const ric_sampler *s, const ric_segment *piece, size_t k) {
   ric_segment_state(piece, position(piece, s->times[k]), s->q + k * s->coordinates + piece->first, u);
 }
 
-/* Times in [start, end of the part): the end itself belongs to what comes after. */
+/* Times in [start, end of the part): the end belongs to the next part. */
 int ric_sampler_segment(const ric_segment *piece, double end, void *sampler) {
   ric_sampler *s = sampler;
   double until = piece->start + end * piece->length;
@@ -88,7 +88,7 @@ static ric_status check_options(const ric_trajectory_options *o, ric_error *erro
   return RIC_OK;
 }
 
-/* Obstacles that motions pass need none. */
+/* Obstacles that are ignored (pass_rigid) need no room. */
 static ric_status check_room(const ric_trajectory *tr, ric_error *error) {
   return tr->options.pass_rigid ? RIC_OK : system_check_room(tr->system, error);
 }
@@ -226,7 +226,7 @@ static void show_grazes(ric_trajectory *tr, double start, double length) {
   }
 }
 
-/* Events of one time count once. */
+/* Simultaneous events count once. */
 static void count_event_time(ric_trajectory *tr) {
   if (tr->flow->time - tr->window_start > 1) {
     tr->window_start = tr->flow->time;
@@ -235,7 +235,7 @@ static void count_event_time(ric_trajectory *tr) {
   tr->window_events++;
 }
 
-/* How far a step counts: up to the first roots, or to the near miss at which tangent vectors end. */
+/* Accepted part of a step: up to the first roots, or to the near miss at which tangent vectors become undefined. */
 static double extent(ric_trajectory *tr, bool *meets) {
   locator *l = &tr->locator;
   double x = l->roots.count > 0 ? l->first : l->horizon;
@@ -294,7 +294,7 @@ static bool is_over(ric_trajectory *tr, double end) {
     snprintf(reason, sizeof reason, "events at more than %g times between t = %g and %g", tr->options.events_per_time,
              tr->window_start, tr->flow->time);
     conclude(tr, RIC_RUN_EVENT_LIMIT, reason);
-    tr->window_start = tr->flow->time; /* a run that goes on gets a new allowance */
+    tr->window_start = tr->flow->time; /* a continued run gets a new allowance */
     tr->window_events = 0;
   } else if (!(tr->flow->time < end))
     conclude(tr, RIC_RUN_COMPLETED, "");
@@ -334,7 +334,7 @@ ric_status ric_trajectory_run(ric_trajectory *tr, double end, const ric_observer
                               ric_error *error) {
   ric_error local = {0};
   if (!tr->started)
-    return ric_fail(error, RIC_EINVAL, "the trajectory has no start");
+    return ric_fail(error, RIC_EINVAL, "the trajectory has not been started");
   RIC_TRY(flow_check_revision(tr->flow, error));
   if (!(end >= tr->flow->time && end < INFINITY))
     return ric_fail(error, RIC_EINVAL, "end = %g, expected a finite time from t = %g on", end, tr->flow->time);

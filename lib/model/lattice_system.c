@@ -417,14 +417,14 @@ ric_status ric_system_create_lattice(const ric_lattice *lattice, const ric_obsta
 ric_status ric_system_set_lattice(ric_system *system, const ric_lattice *lattice, ric_error *error) {
   static const char *const ends[] = {"periodic", "fixed", "free"};
   if (system->taylor != SYSTEM_LATTICE)
-    return ric_fail(error, RIC_EINVAL, "a lattice for a system of another kind, expected one made of a lattice");
+    return ric_fail(error, RIC_EINVAL, "the system is not a lattice, expected a system created from a lattice");
   RIC_TRY(ric_lattice_check(lattice, error));
   lattice_system *s = (lattice_system *)(void *)system;
   if (lattice->particles != s->lattice.particles)
-    return ric_fail(error, RIC_EINVAL, "particles = %zu, expected %zu as the system was made", lattice->particles,
-                    s->lattice.particles);
+    return ric_fail(error, RIC_EINVAL, "particles = %zu, expected %zu as at the creation of the system",
+                    lattice->particles, s->lattice.particles);
   if (lattice->ends != s->lattice.ends)
-    return ric_fail(error, RIC_EINVAL, "ends = %s, expected %s as the system was made", ends[lattice->ends],
+    return ric_fail(error, RIC_EINVAL, "ends = %s, expected %s as at the creation of the system", ends[lattice->ends],
                     ends[s->lattice.ends]);
   RIC_TRY(take_lattice(s, lattice, error));
   system->revision++;

@@ -483,11 +483,11 @@ ric_status ric_system_create_mck(const ric_mck *mck, const ric_obstacle *obstacl
 ric_status ric_system_set_mck(ric_system *system, const ric_mck *mck, ric_error *error) {
   if (system->taylor != SYSTEM_MCK)
     return ric_fail(error, RIC_EINVAL,
-                    "an M-C-K model for a system of another kind, expected one made of such a model");
+                    "the system is not an M-C-K system, expected a system created from an M-C-K model");
   RIC_TRY(ric_mck_check(mck, error));
   if (mck->coordinates != system->coordinates)
-    return ric_fail(error, RIC_EINVAL, "coordinates = %zu, expected %zu as the system was made", mck->coordinates,
-                    system->coordinates);
+    return ric_fail(error, RIC_EINVAL, "coordinates = %zu, expected %zu as at the creation of the system",
+                    mck->coordinates, system->coordinates);
   mck_system *s = (mck_system *)system, made = {.base = s->base}, before = *s;
   ric_status status = make(&made, mck, error);
   if (status == RIC_OK) {

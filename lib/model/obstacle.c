@@ -89,13 +89,13 @@ ric_status system_take_obstacles(ric_system *s, const ric_obstacle *obstacles, s
 static ric_status check_same_place(const ric_obstacle *o, const ric_obstacle *now, size_t j, ric_error *error) {
   bool rigid = o->stiffness == INFINITY;
   if (o->coordinate != now->coordinate)
-    return ric_fail(error, RIC_EINVAL, "obstacle %zu: coordinate = %zu, expected %zu as the system was made", j,
-                    o->coordinate, now->coordinate);
+    return ric_fail(error, RIC_EINVAL, "obstacle %zu: coordinate = %zu, expected %zu as at the creation of the system",
+                    j, o->coordinate, now->coordinate);
   if (o->side != now->side)
-    return ric_fail(error, RIC_EINVAL, "obstacle %zu: side = %d, expected %d as the system was made", j, o->side,
-                    now->side);
+    return ric_fail(error, RIC_EINVAL, "obstacle %zu: side = %d, expected %d as at the creation of the system", j,
+                    o->side, now->side);
   if (rigid != (now->stiffness == INFINITY))
-    return ric_fail(error, RIC_EINVAL, "obstacle %zu: stiffness = %g, expected %s as the system was made", j,
+    return ric_fail(error, RIC_EINVAL, "obstacle %zu: stiffness = %g, expected %s as at the creation of the system", j,
                     o->stiffness, rigid ? "a finite one" : "infinity");
   return RIC_OK;
 }
@@ -104,7 +104,8 @@ ric_status ric_system_set_obstacles(ric_system *s, const ric_obstacle *obstacles
   if (!s->obstacles)
     return ric_fail(error, RIC_EINVAL, "obstacles for a user's system, expected a lattice or an M-C-K system");
   if (count != s->obstacle_count)
-    return ric_fail(error, RIC_EINVAL, "%zu obstacles, expected %zu as the system was made", count, s->obstacle_count);
+    return ric_fail(error, RIC_EINVAL, "%zu obstacles, expected %zu as at the creation of the system", count,
+                    s->obstacle_count);
   RIC_TRY(ric_obstacles_check(obstacles, count, s->coordinates, error));
   for (size_t j = 0; j < count; j++)
     RIC_TRY(check_same_place(&obstacles[j], &s->obstacles[j], j, error));

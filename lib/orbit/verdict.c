@@ -111,8 +111,15 @@ static size_t first_pulling(const orbit_facts *f, const ric_orbit *o) {
   return first;
 }
 
+/* The impulse along the gap, where the orbit has one: impact maps of users have none. */
 static void explain_pulling(const orbit_facts *f, ric_orbit *o, size_t k) {
-  char words[PHRASE_BYTES];
+  char words[PHRASE_BYTES], time[32];
+  snprintf(time, sizeof time, "%.6g", o->impact_time[k]);
+  if (isfinite(o->impulse[k]) && f->names.noun) {
+    add(o, "impulse of %s at t = %s is %.6g, must be positive", owner(&f->names, o->impact_obstacle[k], words),
+        o->impact_time[k] == o->period / 2 ? "T/2" : time, o->impulse[k]);
+    return;
+  }
   add(o, "%s at t = %.6g: gap rate %.3g before the impact, must be negative",
       phrase(&f->names, o->impact_obstacle[k], "is pulled by", words), o->impact_time[k], o->gap_rate[k]);
 }

@@ -5,10 +5,10 @@
 
 #include "witness/allocation_counter.h"
 #include "witness/forced_oscillator.h"
-#include "witness/grazed.h"
-#include "witness/recorded.h"
-#include "sectioned.h"
-#include "witness/shot.h"
+#include "witness/grazing_family.h"
+#include "witness/recorded_run.h"
+#include "section_attractor.h"
+#include "witness/shooting_solution.h"
 
 static const double two_pi = 6.283185307179586;
 
@@ -22,7 +22,7 @@ static ric_system *oscillator(double mu) {
   ric_obstacle wall = ric_obstacle_wall(0, 1);
   wall.restitution = restitution;
   double touching = hypot(1 - frequency * frequency, DAMPING * frequency);
-  return sectioned_oscillator(DAMPING, frequency, (1 + mu) * touching, &wall, 1);
+  return section_oscillator(DAMPING, frequency, (1 + mu) * touching, &wall, 1);
 }
 
 static ric_motion_section_options strobes(void) {
@@ -30,7 +30,7 @@ static ric_motion_section_options strobes(void) {
 }
 
 /* Divergence of a period, and ln e^2 at every impact. */
-static double sum_of_exponents(const sectioned *f) {
+static double sum_of_exponents(const section_attractor *f) {
   return -DAMPING * two_pi / frequency + 2 * log(restitution) * f->attractor.impacts;
 }
 
@@ -42,26 +42,26 @@ static double middle_of_window(size_t period) {
   forced_oscillator_init(&o);
   o.lattice.on_site.damping = DAMPING;
   ric_family_problem problem = forced_oscillator_problem(&o, 0, 1, frequency);
-  ric_family_options options = grazed_within(0.5, 60, 5);
-  grazed at = grazed_from(&problem, &options, 0.5, rest, rest + 1, NULL, two_pi / frequency);
-  grazed_find(&at);
-  ric_grazing_map map = grazed_map(&at, NULL);
+  ric_family_options options = grazing_family_options(0.5, 60, 5);
+  grazing_family at = grazing_family_from(&problem, &options, 0.5, rest, rest + 1, NULL, two_pi / frequency);
+  grazing_family_find(&at);
+  ric_grazing_map map = grazing_family_map(&at, NULL);
   ric_grazing_window window;
   assert_int_equal(ric_grazing_window_find(&map, period, &window, NULL), RIC_OK);
   assert_true(window.exists);
   ric_grazing_map_clear(&map);
-  grazed_clear(&at);
+  grazing_family_clear(&at);
   forced_oscillator_clear(&o);
   return sqrt(window.low.d * window.high.d);
 }
 
 static void windows_have_their_periods(void **state) {
   (void)state;
-  static sectioned f;
+  static section_attractor f;
   for (size_t n = 7; n <= 12; n++) {
     ric_system *system = oscillator(middle_of_window(n));
     ric_motion_section_options section = strobes();
-    ric_attractor_options options = sectioned_iterates(2000, 10 * n);
+    ric_attractor_options options = section_attractor_options(2000, 10 * n);
     f.z[0] = f.z[1] = 0;
     section_run_on(system, &section, &options, &f);
     assert_int_equal(f.attractor.kind, RIC_ATTRACTOR_PERIODIC);
@@ -75,11 +75,11 @@ static void windows_have_their_periods(void **state) {
 static void exponents_sum_to_divergence_and_losses(void **state) {
   (void)state;
   static const double mus[] = {3e-3, 6e-4, 2e-5};
-  static sectioned f;
+  static section_attractor f;
   for (size_t i = 0; i < 3; i++) {
     ric_system *system = oscillator(mus[i]);
     ric_motion_section_options section = strobes();
-    ric_attractor_options options = sectioned_iterates(500, 1500);
+    ric_attractor_options options = section_attractor_options(500, 1500);
     options.exponents = 2;
     f.z[0] = f.z[1] = 0;
     section_run_on(system, &section, &options, &f);
@@ -96,32 +96,32 @@ static double log_of_multiplier(ric_system *system, const double *after, size_t 
   static const size_t wall = 0;
   ric_shooting_problem problem = {
       .kind = RIC_MOTION_FORCED, .sequence = &wall, .count = 1, .flow = ric_flow_options_default()};
-  shot s = shot_at(system, &problem);
+  shooting_solution s = shooting_solution_of_system(system, &problem);
   ric_multipliers m;
   ric_multiplier_options judge = ric_multiplier_options_default();
-  shot_guess(&s, after, after + 1, after + 2, (double)n * two_pi / frequency);
-  shot_solve(&s);
+  shooting_solution_guess(&s, after, after + 1, after + 2, (double)n * two_pi / frequency);
+  shooting_solution_solve(&s);
   assert_int_equal(s.orbit.outcome, RIC_ADMISSIBLE);
   assert_int_equal(ric_multipliers_init(&m, 2, NULL), RIC_OK);
   assert_int_equal(ric_shooting_multipliers(s.shooting, s.z, s.given, &judge, &m, NULL), RIC_OK);
   double logarithm = log(m.largest);
   ric_multipliers_clear(&m);
-  shot_clear(&s); /* and the system */
+  shooting_solution_clear(&s); /* and the system */
   return logarithm;
 }
 
 static void exponents_of_periodic_motions_are_logarithms_of_multipliers(void **state) {
   (void)state;
-  static sectioned strobe, impact;
+  static section_attractor strobe, impact;
   for (size_t n = 7; n <= 9; n++) {
     ric_system *system = oscillator(middle_of_window(n));
     ric_motion_section_options section = strobes();
-    ric_attractor_options options = sectioned_iterates(2000, 200 * n);
+    ric_attractor_options options = section_attractor_options(2000, 200 * n);
     options.exponents = 2;
     strobe.z[0] = strobe.z[1] = 0;
     section_run_on(system, &section, &options, &strobe);
     section.kind = RIC_SECTION_IMPACT;
-    options = sectioned_iterates(400, 200);
+    options = section_attractor_options(400, 200);
     options.exponents = 2;
     memset(impact.z, 0, sizeof impact.z);
     section_run_on(system, &section, &options, &impact);
@@ -138,13 +138,13 @@ static void exponents_of_periodic_motions_are_logarithms_of_multipliers(void **s
 /* After 1e5 periods the state has all the digits that it has after a few: time does not take them away. */
 static void linear_motions_settle_on_their_steady_response(void **state) {
   (void)state;
-  static sectioned f;
+  static section_attractor f;
   const double c = 0.5, w = 1.7, phase = 0.3, force = 2, k = 1 - w * w, size = k * k + c * c * w * w;
   const double x = force * (k * cos(two_pi * phase) + c * w * sin(two_pi * phase)) / size;
   const double v = force * w * (c * w * cos(two_pi * phase) - k * sin(two_pi * phase)) / size;
-  ric_system *system = sectioned_oscillator(c, w, force, NULL, 0);
+  ric_system *system = section_oscillator(c, w, force, NULL, 0);
   ric_motion_section_options section = ric_motion_section_options_default(two_pi / w);
-  ric_attractor_options options = sectioned_iterates(100000, 100);
+  ric_attractor_options options = section_attractor_options(100000, 100);
   section.phase = phase;
   options.exponents = 2;
   f.z[0] = 3, f.z[1] = -1;
@@ -163,11 +163,11 @@ static void linear_motions_settle_on_their_steady_response(void **state) {
 /* A time that is no period of the forcing does not send the clock back: the states are those of one long motion. */
 static void any_other_period_will_do(void **state) {
   (void)state;
-  static sectioned f;
+  static section_attractor f;
   const double c = 0.5, w = 1.7, force = 2, k = 1 - w * w, size = k * k + c * c * w * w, period = 1.1;
-  ric_system *system = sectioned_oscillator(c, w, force, NULL, 0);
+  ric_system *system = section_oscillator(c, w, force, NULL, 0);
   ric_motion_section_options section = ric_motion_section_options_default(period);
-  ric_attractor_options options = sectioned_iterates(1000, 200);
+  ric_attractor_options options = section_attractor_options(1000, 200);
   f.z[0] = f.z[1] = 0;
   section_run_on(system, &section, &options, &f);
   assert_int_equal(f.attractor.kind, RIC_ATTRACTOR_APERIODIC);
@@ -194,32 +194,32 @@ static ric_system *five_masses(void) {
 
 static const double five_q[5] = {0.1, -0.2, 0, 0.3, 0.2}, five_u[5] = {0};
 
-static void start_five(sectioned *f) {
+static void start_five(section_attractor *f) {
   memset(f->z, 0, sizeof f->z);
   memcpy(f->z, five_q, sizeof five_q);
 }
 
 /* The k-th state is that of a run to its time. @returns the impacts on the way */
 static size_t check_strobe(const ric_system *system, const double *z, double time) {
-  recorded r = record(system, NULL, five_q, five_u, time);
+  recorded_run r = record_run(system, NULL, five_q, five_u, time);
   for (size_t i = 0; i < 5; i++) {
     assert_close(z[i], r.q[i], 1e-8);
     assert_close(z[5 + i], r.u[i], 1e-8);
   }
-  size_t impacts = recorded_impacts(&r);
-  recorded_clear(&r);
+  size_t impacts = recorded_run_impacts(&r);
+  recorded_run_clear(&r);
   return impacts;
 }
 
 static void strobes_are_states_of_the_plain_motion(void **state) {
   (void)state;
   enum { KEPT = 12 };
-  static sectioned f;
+  static section_attractor f;
   double period = two_pi / 1.3, sum = 0;
   size_t impacts = 0;
   ric_system *system = five_masses();
   ric_motion_section_options section = ric_motion_section_options_default(period);
-  ric_attractor_options options = sectioned_iterates(0, KEPT);
+  ric_attractor_options options = section_attractor_options(0, KEPT);
   options.observe = 4;
   options.exponents = 10;
   start_five(&f);
@@ -245,17 +245,17 @@ static void check_impact(const double *z, const ric_event *e, double period) {
 
 static void check_impacts(size_t obstacle) {
   enum { KEPT = 8 };
-  static sectioned f;
+  static section_attractor f;
   double period = two_pi / 1.3;
   ric_system *system = five_masses();
   ric_motion_section_options section = ric_motion_section_options_default(period);
-  ric_attractor_options options = sectioned_iterates(0, KEPT);
+  ric_attractor_options options = section_attractor_options(0, KEPT);
   section.kind = RIC_SECTION_IMPACT;
   section.obstacle = obstacle;
   options.observe = 10;
   start_five(&f);
   section_run_on(system, &section, &options, &f);
-  recorded r = record(system, NULL, five_q, five_u, 150);
+  recorded_run r = record_run(system, NULL, five_q, five_u, 150);
   size_t seen = 0, all = 0;
   for (size_t i = 0; i < r.count && seen < KEPT; i++) {
     const ric_event *e = &r.events[i];
@@ -265,7 +265,7 @@ static void check_impacts(size_t obstacle) {
   }
   assert_int_equal(seen, KEPT);
   assert_close(f.attractor.impacts * KEPT, (double)all, 1e-12);
-  recorded_clear(&r);
+  recorded_run_clear(&r);
   ric_system_destroy(&system);
 }
 
@@ -279,10 +279,10 @@ static void impact_sections_see_the_events_of_the_plain_motion(void **state) {
 /* A ball that loses nothing comes back to the floor with the same speed. */
 static void autonomous_motions_need_no_period(void **state) {
   (void)state;
-  static sectioned f;
+  static section_attractor f;
   ric_system *ball = falling_ball(1);
   ric_motion_section_options section = ric_motion_section_options_default(0);
-  ric_attractor_options options = sectioned_iterates(10, 400);
+  ric_attractor_options options = section_attractor_options(10, 400);
   section.kind = RIC_SECTION_IMPACT;
   options.exponents = 2;
   options.observe = 1;
@@ -304,10 +304,10 @@ static void autonomous_motions_need_no_period(void **state) {
 
 static void what_is_kept_follows_the_transient(void **state) {
   (void)state;
-  static sectioned all, late;
+  static section_attractor all, late;
   ric_system *system = oscillator(middle_of_window(7));
   ric_motion_section_options section = strobes();
-  ric_attractor_options whole = sectioned_iterates(0, 330), some = sectioned_iterates(300, 30);
+  ric_attractor_options whole = section_attractor_options(0, 330), some = section_attractor_options(300, 30);
   some.keep = 20;
   all.z[0] = all.z[1] = late.z[0] = late.z[1] = 0;
   late.values[20] = 17;
@@ -321,17 +321,17 @@ static void what_is_kept_follows_the_transient(void **state) {
   ric_system_destroy(&system);
 }
 
-static void compare_bits(const sectioned *a, const sectioned *b, size_t states, size_t exponents) {
+static void compare_bits(const section_attractor *a, const section_attractor *b, size_t states, size_t exponents) {
   assert_memory_equal(a->states, b->states, states * sizeof(double));
   assert_memory_equal(a->exponents, b->exponents, exponents * sizeof(double));
 }
 
 static void results_are_the_same_bits_again(void **state) {
   (void)state;
-  static sectioned first, again, fresh;
+  static section_attractor first, again, fresh;
   ric_system *system = oscillator(3e-3);
   ric_motion_section_options section = strobes();
-  ric_attractor_options options = sectioned_iterates(300, 300), others = sectioned_iterates(17, 100);
+  ric_attractor_options options = section_attractor_options(300, 300), others = section_attractor_options(17, 100);
   ric_motion_section *s = section_of(system, &section);
   options.exponents = 2;
   memset(first.z, 0, sizeof first.z);
@@ -351,10 +351,10 @@ static void results_are_the_same_bits_again(void **state) {
 static void runs_allocate_nothing_the_second_time(void **state) {
   (void)state;
 #ifdef ALLOCATIONS_ARE_COUNTED
-  static sectioned f;
+  static section_attractor f;
   ric_system *system = oscillator(3e-3);
   ric_motion_section_options section = strobes();
-  ric_attractor_options options = sectioned_iterates(100, 200);
+  ric_attractor_options options = section_attractor_options(100, 200);
   ric_motion_section *s = section_of(system, &section);
   options.exponents = 2;
   for (int k = 0; k < 2; k++) {

@@ -3,8 +3,8 @@
 
 #include <ricochet/ricochet.h>
 
-#include "witness/recorded.h"
-#include "sectioned.h"
+#include "witness/recorded_run.h"
+#include "section_attractor.h"
 
 static const double two_pi = 6.283185307179586;
 
@@ -15,19 +15,19 @@ static ric_motion_section_options strobes(void) {
 /* Under a wall that its motions touch. */
 static ric_system *oscillator(void) {
   ric_obstacle wall = ric_obstacle_wall(0, 1);
-  return sectioned_oscillator(3, 4, hypot(15, 12), &wall, 1);
+  return section_oscillator(3, 4, hypot(15, 12), &wall, 1);
 }
 
 /* --- what goes wrong ---------------------------------------------------------------------------------------------- */
 
 static void motions_that_grow_have_diverged(void **state) {
   (void)state;
-  static sectioned f;
+  static section_attractor f;
   ric_lattice mass = ric_lattice_default(1, RIC_ENDS_FREE);
   mass.on_site.linear = -1; /* x = e^t: 1e100 after 230 */
   ric_system *system = lattice_system(&mass, NULL, 0);
   ric_motion_section_options section = ric_motion_section_options_default(1);
-  ric_attractor_options options = sectioned_iterates(200, 100);
+  ric_attractor_options options = section_attractor_options(200, 100);
   f.z[0] = f.z[1] = 1;
   section_run_on(system, &section, &options, &f);
   assert_int_equal(f.attractor.kind, RIC_ATTRACTOR_DIVERGED);
@@ -42,11 +42,11 @@ static void motions_that_grow_have_diverged(void **state) {
 
 static void motions_that_cannot_go_on_have_failed(void **state) {
   (void)state;
-  static sectioned f;
+  static section_attractor f;
   ric_obstacle far = ric_obstacle_wall(0, 50);
-  ric_system *system = sectioned_oscillator(0.5, 1.7, 2, &far, 1), *ball = falling_ball(0.5);
+  ric_system *system = section_oscillator(0.5, 1.7, 2, &far, 1), *ball = falling_ball(0.5);
   ric_motion_section_options section = ric_motion_section_options_default(two_pi / 1.7);
-  ric_attractor_options options = sectioned_iterates(10, 10);
+  ric_attractor_options options = section_attractor_options(10, 10);
   section.kind = RIC_SECTION_IMPACT;
   section.wait = 70;
   memset(f.z, 0, sizeof f.z);
@@ -69,12 +69,12 @@ static void motions_that_cannot_go_on_have_failed(void **state) {
  * iterates do. */
 static void motions_that_graze_have_no_exponents(void **state) {
   (void)state;
-  static sectioned f;
+  static section_attractor f;
   ric_obstacle wall = ric_obstacle_wall(0, 1);
   const double c = 3, w = 4, k = 1 - w * w, size = k * k + c * c * w * w, force = (1 - 5e-11) * sqrt(size);
-  ric_system *system = sectioned_oscillator(c, w, force, &wall, 1);
+  ric_system *system = section_oscillator(c, w, force, &wall, 1);
   ric_motion_section_options section = ric_motion_section_options_default(two_pi / w);
-  ric_attractor_options options = sectioned_iterates(5, 30);
+  ric_attractor_options options = section_attractor_options(5, 30);
   options.exponents = 2;
   f.z[0] = force * k / size;
   f.z[1] = force * w * c * w / size;
@@ -98,7 +98,7 @@ static void runs_stop_when_asked_to(void **state) {
   ric_attractor a = {.z = z};
   ric_system *system = oscillator();
   ric_motion_section_options section = strobes();
-  ric_attractor_options options = sectioned_iterates(100, 100);
+  ric_attractor_options options = section_attractor_options(100, 100);
   ric_motion_section *s = section_of(system, &section);
   options.poll.call = stop_at_once;
   assert_int_equal(ric_motion_section_run(s, &options, &a, NULL), RIC_ESTOPPED);
@@ -120,7 +120,7 @@ static void refuse(const ric_system *system, const ric_motion_section_options *o
 
 static void sections_that_make_no_sense_are_refused(void **state) {
   (void)state;
-  ric_system *system = oscillator(), *free_mass = sectioned_oscillator(1, 1, 1, NULL, 0);
+  ric_system *system = oscillator(), *free_mass = section_oscillator(1, 1, 1, NULL, 0);
   ric_motion_section_options strobe = ric_motion_section_options_default(0), impact = strobes();
   refuse(system, &strobe, "period = 0, expected a finite number > 0");
   strobe.period = NAN;
@@ -153,7 +153,7 @@ static void runs_that_make_no_sense_are_refused(void **state) {
   ric_motion_section_options options = strobes();
   options.kind = RIC_SECTION_IMPACT;
   ric_motion_section *s = section_of(system, &options);
-  ric_attractor_options o = sectioned_iterates(1, 1);
+  ric_attractor_options o = section_attractor_options(1, 1);
   assert_int_equal(ric_motion_section_size(s), 3);
   assert_int_equal(ric_motion_section_run(s, &o, &a, &error), RIC_EINVAL);
   assert_string_equal(error.message, "start: the gap of obstacle 0 (a wall) is -1, expected >= 0");
@@ -161,7 +161,7 @@ static void runs_that_make_no_sense_are_refused(void **state) {
   o.exponents = 3;
   assert_int_equal(ric_motion_section_run(s, &o, &a, &error), RIC_EINVAL);
   assert_string_equal(error.message, "exponents = 3, expected at most 2");
-  o = sectioned_iterates(1, 0);
+  o = section_attractor_options(1, 0);
   assert_int_equal(ric_motion_section_run(s, &o, &a, &error), RIC_EINVAL);
   assert_int_equal(ric_motion_section_set_period(s, NAN, NULL), RIC_EINVAL);
   assert_int_equal(ric_motion_section_set_period(s, 0, NULL), RIC_EINVAL);

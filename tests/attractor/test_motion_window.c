@@ -3,7 +3,7 @@
 
 #include <ricochet/ricochet.h>
 
-#include "witness/grazed.h"
+#include "witness/grazing_family.h"
 
 static const double two_pi = 6.283185307179586, restitution = 0.8, damping = 3;
 
@@ -154,15 +154,15 @@ static const double rounding = 3e-13;
 /* The map beside grazing, on the section t = 0. */
 static ric_grazing_map map_of(oscillator *o, double *slope) {
   const ric_family_problem problem = problem_of(o);
-  const ric_family_options options = grazed_within(-0.5, 0.5, 0.1);
+  const ric_family_options options = grazing_family_options(-0.5, 0.5, 0.1);
   const ric_grazing_plane plane = {.time = 0};
   const double rest[2] = {0};
-  grazed g = grazed_from(&problem, &options, -0.2, rest, rest + 1, NULL, two_pi / o->w);
-  grazed_find(&g);
+  grazing_family g = grazing_family_from(&problem, &options, -0.2, rest, rest + 1, NULL, two_pi / o->w);
+  grazing_family_find(&g);
   assert_close(g.grazing.parameter, 0, 1e-13);
-  const ric_grazing_map map = grazed_map(&g, &plane);
+  const ric_grazing_map map = grazing_family_map(&g, &plane);
   *slope = g.grazing.slope;
-  grazed_clear(&g);
+  grazing_family_clear(&g);
   return map;
 }
 

@@ -5,7 +5,7 @@
 #include <ricochet/ricochet.h>
 
 #include "map_lines.h"
-#include "sectioned.h"
+#include "section_attractor.h"
 #include "witness/grazing_maps.h"
 
 enum { MOST_POINTS = 400, SIZE = 3 };
@@ -169,7 +169,7 @@ static void the_window_of_smooth_motions_ends_where_they_graze(void **state) {
                                    .set = set_force,
                                    .user = &o,
                                    .parameters = 1};
-  o.options = sectioned_iterates(200, 200);
+  o.options = section_attractor_options(200, 200);
   o.options.keep = 0;
   for (size_t i = 0; i < POINTS; i++) {
     o.p[i] = grazing * (0.6 + 0.07 * (double)i);

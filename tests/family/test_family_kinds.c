@@ -2,7 +2,7 @@
  * impulse_sign. */
 #include "support.h"
 
-#include "witness/recorded.h"
+#include "witness/recorded_run.h"
 #include "reference.h"
 
 enum { MOST = 16, NUMBERS = 12 };

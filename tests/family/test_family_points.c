@@ -1,8 +1,8 @@
 /* Special points of families of chains against what is known of them otherwise. */
 #include "support.h"
 
-#include "witness/recorded.h"
-#include "witness/solved.h"
+#include "witness/recorded_run.h"
+#include "witness/solved_orbit.h"
 
 enum { CHAINS = 120, MOST = 64 };
 

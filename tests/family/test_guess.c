@@ -1,8 +1,8 @@
 /* First guesses: against quadratures, closed forms and event-driven runs. */
 #include "support.h"
 
-#include "witness/shot.h"
-#include "witness/solved.h"
+#include "witness/shooting_solution.h"
+#include "witness/solved_orbit.h"
 
 static const double turn = 6.283185307179586;
 
@@ -126,7 +126,7 @@ static void even_guesses_of_chains_are_their_orbits(void **state) {
   enum { N = 6 };
   const size_t starts[2] = {0, 3}, halves[1] = {4};
   ric_obstacle floors[N];
-  solved exact = solved_by(RIC_METHOD_IMPULSE, scenario_word("s..sh.", 1, RIC_ENDS_FIXED, 0.1, 5.5));
+  solved_orbit exact = solve_orbit(RIC_METHOD_IMPULSE, scenario_word("s..sh.", 1, RIC_ENDS_FIXED, 0.1, 5.5));
   const ric_lattice lattice = ric_lattice_of_chain(&exact.scenario.chain);
   const ric_shooting_problem motion = even(starts, 2, halves, 1);
   const ric_guess_problem problem = {&lattice, floors, N, &motion};
@@ -140,7 +140,7 @@ static void even_guesses_of_chains_are_their_orbits(void **state) {
     assert_close(guess.v[i], exact.orbit.v[i], 1e-10);
   }
   ric_guess_clear(&guess);
-  solved_clear(&exact);
+  solved_orbit_clear(&exact);
 }
 
 /* A ring of nonlinear springs, one particle of which hits its floor. */
@@ -170,8 +170,8 @@ static void even_guesses_of_nonlinear_lattices_are_motions(void **state) {
   put_floors(floors, RING);
   check(ric_guess_even(&problem, ring_period, &guess, &error), &error);
   check(ric_system_create_lattice(&lattice, floors, RING, &system, &error), &error);
-  shot s = shot_at(system, &motion);
-  shot_guess(&s, guess.q, guess.v, NULL, ring_period);
+  shooting_solution s = shooting_solution_of_system(system, &motion);
+  shooting_solution_guess(&s, guess.q, guess.v, NULL, ring_period);
   check(ric_orbit_init_for(&orbit, system, 1, &error), &error);
   check(ric_shooting_orbit(s.shooting, s.z, ring_period, &orbit, &error), &error);
   assert_int_equal(orbit.outcome, RIC_ADMISSIBLE);
@@ -180,7 +180,7 @@ static void even_guesses_of_nonlinear_lattices_are_motions(void **state) {
     fail_msg("%s", verification.reason);
   ric_orbit_clear(&orbit);
   ric_guess_clear(&guess);
-  shot_clear(&s);
+  shooting_solution_clear(&s);
 }
 
 /* Impacts in between have times that are no linear unknowns. */
@@ -288,9 +288,9 @@ static void nonlinear_modes_that_graze_are_smooth_motions_that_turn_at_the_obsta
     check(ric_guess_grazing_mode(&s.problem, 0, swings, &guess, &error), &error);
     assert_close(guess.v[1], 0, 1e-9);
     check(ric_system_create_lattice(&s.lattice, NULL, 0, &system, &error), &error);
-    shot free_motion = shot_at(system, &smooth);
-    shot_guess(&free_motion, guess.q, guess.v, NULL, guess.period);
-    shot_solve(&free_motion);
+    shooting_solution free_motion = shooting_solution_of_system(system, &smooth);
+    shooting_solution_guess(&free_motion, guess.q, guess.v, NULL, guess.period);
+    shooting_solution_solve(&free_motion);
     for (int i = 0; i < 2; i++)
       assert_close(free_motion.orbit.q[i], guess.q[i], 1e-8);
     check(ric_shooting_amplitude(free_motion.shooting, free_motion.z, guess.period, &amplitude, &error), &error);
@@ -299,7 +299,7 @@ static void nonlinear_modes_that_graze_are_smooth_motions_that_turn_at_the_obsta
           &error);
     if (swings == 2) /* once more in the middle */
       assert_close(q[1][1], 2, 1e-7);
-    shot_clear(&free_motion);
+    shooting_solution_clear(&free_motion);
   }
   ric_guess_clear(&guess);
 }
@@ -358,14 +358,14 @@ static void guesses_become_the_motion_of_their_period_with_its_energy(void **sta
   const double q[2] = {guess.q[0], guess.q[1]}, v = guess.v[1];
   s.links[1].cubic = 0.05; /* of which the guess knows nothing */
   check(ric_system_create_lattice(&s.lattice, &s.wall, 1, &system, &error), &error);
-  shot found = shot_at(system, &s.motion);
+  shooting_solution found = shooting_solution_of_system(system, &s.motion);
   check(ric_guess_solve(found.shooting, NULL, &guess, &energy, &error), &error);
   assert_true(guess.period == period && guess.q[1] == q[1] && guess.q[0] != q[0] && guess.v[1] != v);
   assert_close(energy, ric_lattice_energy(&s.lattice, guess.q, guess.v), 1e-12);
   const double z[2] = {guess.q[0], guess.v[1]};
   check(ric_shooting_residual(found.shooting, z, period, F, NULL, NULL, &error), &error);
   assert_close(hypot(F[0], F[1]), 0, 1e-11);
-  shot_clear(&found);
+  shooting_solution_clear(&found);
   ric_guess_clear(&guess);
 }
 

@@ -3,7 +3,7 @@
 #include "support.h"
 
 #include "reference.h"
-#include "witness/solved.h"
+#include "witness/solved_orbit.h"
 
 enum { MOST_PARTICLES = 30, MOST_SPECIAL = 32 };
 
@@ -448,7 +448,7 @@ static int measure(const ric_family_point *point, void *user) {
 static void hertz_orbits_tend_to_those_of_the_impact_law_as_the_stiffness_to_the_minus_two_fifths(void **state) {
   (void)state;
   const double period = 0.75 * turn;
-  solved x = solved_by(RIC_METHOD_IMPULSE, scenario_single(30, RIC_ENDS_PERIODIC, 0.1, period, 15));
+  solved_orbit x = solve_orbit(RIC_METHOD_IMPULSE, scenario_single(30, RIC_ENDS_PERIODIC, 0.1, period, 15));
   model m = hertz_ring(30, 100, period);
   ric_family_options options = range(0, 0.1, 0.02);
   ric_family *family = family_of(&m, &even, &options);
@@ -470,7 +470,7 @@ static void hertz_orbits_tend_to_those_of_the_impact_law_as_the_stiffness_to_the
   assert_close(rate, -0.4, 0.01);
   ric_family_destroy(&family);
   ric_system_destroy(&m.system);
-  solved_clear(&x);
+  solved_orbit_clear(&x);
 }
 
 int main(void) {

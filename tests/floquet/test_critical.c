@@ -1,7 +1,7 @@
 /* Critical parameters: where multipliers leave the circle. */
 #include "support.h"
 
-#include "witness/multiplied.h"
+#include "witness/multiplier_witness.h"
 #include "scenario/example1.h"
 
 enum { ROOM = 64 };
@@ -68,12 +68,12 @@ static void number_outside_changes_across_every_critical_parameter(void **state)
     double step = fmax(1e-7, 3 * found[i].uncertainty);
     size_t outside[2];
     for (int side = 0; side < 2; side++) {
-      solved x = solved_by(RIC_METHOD_IMPULSE,
-                           scenario_middle(12, RIC_ENDS_FREE, found[i].parameter + (2 * side - 1) * step, 4.4));
+      solved_orbit x = solve_orbit(RIC_METHOD_IMPULSE,
+                                   scenario_middle(12, RIC_ENDS_FREE, found[i].parameter + (2 * side - 1) * step, 4.4));
       ric_multipliers m = multipliers_by(RIC_MULTIPLIERS_REDUCED, &x, false);
       outside[side] = m.outside;
       ric_multipliers_clear(&m);
-      solved_clear(&x);
+      solved_orbit_clear(&x);
     }
     assert_true(found[i].outwards ? outside[1] > outside[0] : outside[1] < outside[0]);
     assert_close(hypot(found[i].mu.re, found[i].mu.im), 1, 1e-12);

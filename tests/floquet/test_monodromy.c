@@ -5,7 +5,7 @@
 
 #include "witness/derivative.h"
 #include "witness/random_lattice.h"
-#include "witness/recorded.h"
+#include "witness/recorded_run.h"
 #include "scenario/scenario.h"
 
 enum { N = 30, MOST = 8, SIZE = 4 * MOST * MOST };
@@ -30,7 +30,7 @@ static double divergence(const ric_lattice *l) {
   return sum;
 }
 
-static double losses(const recorded *r, const ric_obstacle *obstacles) {
+static double losses(const recorded_run *r, const ric_obstacle *obstacles) {
   double sum = 0;
   for (size_t i = 0; i < r->count; i++)
     if (ric_event_jumps(&r->events[i]))
@@ -56,15 +56,15 @@ static void determinant_is_that_of_impacts_and_damping(void **state) {
       floors[i].restitution = random_uniform(&source, 0.5, 1);
     }
     ric_system *system = lattice_system(&l.lattice, floors, n);
-    recorded r = record(system, NULL, x, x + n, end);
+    recorded_run r = record_run(system, NULL, x, x + n, end);
     assert_int_equal(derivative_by_tangents(system, NULL, 0, x, end, D), RIC_RUN_COMPLETED);
     double size = 1;
     for (size_t i = 0; i < 4 * n * n; i++)
       size = fmax(size, fabs(D[i]));
     double expected = divergence(&l.lattice) * end + losses(&r, floors);
     assert_close(log_determinant(D, 2 * n), expected, 1e-13 * size * size * exp(fabs(expected) / 2));
-    impacts += recorded_impacts(&r);
-    recorded_clear(&r);
+    impacts += recorded_run_impacts(&r);
+    recorded_run_clear(&r);
     ric_system_destroy(&system);
   }
   assert_true(impacts > 100);

@@ -2,7 +2,7 @@
  * numbers. */
 #include "support.h"
 
-#include "witness/multiplied.h"
+#include "witness/multiplier_witness.h"
 #include "scenario/example1.h"
 
 enum { DENSE_CASES = 100, PAIR_CASES = 200 };
@@ -16,7 +16,7 @@ static void reduced_and_dense_multipliers_agree(void **state) {
   random_source source = {.state = 11};
   double worst = 0, worst_outside = 0;
   for (int i = 0; i < DENSE_CASES; i++) {
-    solved x = solved_by(RIC_METHOD_IMPULSE, scenario_few(&source, &ranges, 6));
+    solved_orbit x = solve_orbit(RIC_METHOD_IMPULSE, scenario_few(&source, &ranges, 6));
     ric_multipliers a = multipliers_by(RIC_MULTIPLIERS_REDUCED, &x, false), b = multipliers_dense(&x);
     double scale = fmax(1, a.largest);
     worst = fmax(worst, multipliers_distance(&a, a.count, &b) / scale);
@@ -28,7 +28,7 @@ static void reduced_and_dense_multipliers_agree(void **state) {
     }
     ric_multipliers_clear(&a);
     ric_multipliers_clear(&b);
-    solved_clear(&x);
+    solved_orbit_clear(&x);
   }
   print_message("reduced and dense: %.3g, outside %.3g of the largest\n", worst, worst_outside);
   assert_true(worst < 1e-5);
@@ -41,7 +41,7 @@ static void monodromy_of_a_run_has_the_same_multipliers(void **state) {
   random_source source = {.state = 13};
   size_t compared = 0, unstable = 0;
   for (int i = 0; i < 400 && compared < 40; i++) {
-    solved x = solved_by(RIC_METHOD_IMPULSE, scenario_few(&source, &ranges, 4));
+    solved_orbit x = solve_orbit(RIC_METHOD_IMPULSE, scenario_few(&source, &ranges, 4));
     ric_multipliers a = multipliers_by(RIC_MULTIPLIERS_REDUCED, &x, false);
     ric_multipliers b = multipliers_by(RIC_MULTIPLIERS_MONODROMY, &x, false);
     if (x.orbit.outcome == RIC_ADMISSIBLE && a.largest < 1e4) { /* closure errors grow with it */
@@ -56,7 +56,7 @@ static void monodromy_of_a_run_has_the_same_multipliers(void **state) {
       assert_true(b.stable == RIC_STABILITY_UNKNOWN && strstr(b.reason, "run") != NULL);
     ric_multipliers_clear(&a);
     ric_multipliers_clear(&b);
-    solved_clear(&x);
+    solved_orbit_clear(&x);
   }
   print_message("%zu compared, %zu unstable\n", compared, unstable);
   assert_true(compared == 40 && unstable > 5);
@@ -66,7 +66,7 @@ static void multipliers_come_in_reciprocal_pairs_and_multiply_to_one(void **stat
   (void)state;
   random_source source = {.state = 12};
   for (int i = 0; i < PAIR_CASES; i++) {
-    solved x = solved_by(RIC_METHOD_IMPULSE, scenario_few(&source, &ranges, 6));
+    solved_orbit x = solve_orbit(RIC_METHOD_IMPULSE, scenario_few(&source, &ranges, 6));
     ric_multipliers m = multipliers_by(RIC_MULTIPLIERS_AUTO, &x, false);
     for (size_t k = 0; k < m.count; k++) {
       double square = m.mu[k].re * m.mu[k].re + m.mu[k].im * m.mu[k].im;
@@ -76,16 +76,16 @@ static void multipliers_come_in_reciprocal_pairs_and_multiply_to_one(void **stat
     }
     assert_close(m.log_determinant, 0, 1e-12);
     ric_multipliers_clear(&m);
-    solved_clear(&x);
+    solved_orbit_clear(&x);
   }
 }
 
 static ric_multipliers example_multipliers(double gamma, double period, ric_multiplier_method method) {
   scenario s = example1_at(gamma);
   s.period = period;
-  solved x = solved_by(RIC_METHOD_IMPULSE, s);
+  solved_orbit x = solve_orbit(RIC_METHOD_IMPULSE, s);
   ric_multipliers m = multipliers_by(method, &x, false);
-  solved_clear(&x);
+  solved_orbit_clear(&x);
   return m;
 }
 
@@ -131,8 +131,8 @@ static void decoupled_particles_have_their_own_multipliers(void **state) {
  * that do not repeat with it. */
 static void multipliers_are_those_of_the_whole_chain(void **state) {
   (void)state;
-  solved whole = solved_by(RIC_METHOD_IMPULSE, scenario_word("s...", 8, RIC_ENDS_PERIODIC, 0.2, 4.5));
-  solved cell = solved_by(RIC_METHOD_IMPULSE, scenario_word("s...", 1, RIC_ENDS_PERIODIC, 0.2, 4.5));
+  solved_orbit whole = solve_orbit(RIC_METHOD_IMPULSE, scenario_word("s...", 8, RIC_ENDS_PERIODIC, 0.2, 4.5));
+  solved_orbit cell = solve_orbit(RIC_METHOD_IMPULSE, scenario_word("s...", 1, RIC_ENDS_PERIODIC, 0.2, 4.5));
   ric_multipliers a = multipliers_by(RIC_MULTIPLIERS_AUTO, &whole, false);
   ric_multipliers b = multipliers_by(RIC_MULTIPLIERS_AUTO, &cell, false);
   assert_close(whole.orbit.impulse[0], cell.orbit.impulse[0], 1e-12);
@@ -141,13 +141,13 @@ static void multipliers_are_those_of_the_whole_chain(void **state) {
   assert_true(a.outside > b.outside);
   ric_multipliers_clear(&a);
   ric_multipliers_clear(&b);
-  solved_clear(&whole);
-  solved_clear(&cell);
+  solved_orbit_clear(&whole);
+  solved_orbit_clear(&cell);
 }
 
 static void orbits_without_derivative_are_unknown(void **state) {
   (void)state;
-  solved x = solved_by(RIC_METHOD_IMPULSE, example1_at(7.0 / 36)); /* grazing */
+  solved_orbit x = solve_orbit(RIC_METHOD_IMPULSE, example1_at(7.0 / 36)); /* grazing */
   ric_multipliers m = multipliers_by(RIC_MULTIPLIERS_AUTO, &x, false);
   assert_int_equal(m.stable, RIC_STABILITY_UNKNOWN);
   assert_non_null(strstr(m.reason, "grazing"));
@@ -157,23 +157,23 @@ static void orbits_without_derivative_are_unknown(void **state) {
   m = multipliers_by(RIC_MULTIPLIERS_AUTO, &x, false);
   assert_string_equal(m.reason, "failed orbit: no memory");
   ric_multipliers_clear(&m);
-  solved_clear(&x);
+  solved_orbit_clear(&x);
 }
 
 static void state_of_another_orbit_is_unknown(void **state) {
   (void)state;
-  solved x = solved_by(RIC_METHOD_IMPULSE, example1_at(0.1));
+  solved_orbit x = solve_orbit(RIC_METHOD_IMPULSE, example1_at(0.1));
   x.scenario.chain.gamma = 0.11;
   ric_multipliers m = multipliers_by(RIC_MULTIPLIERS_REDUCED, &x, false);
   assert_int_equal(m.stable, RIC_STABILITY_UNKNOWN);
   assert_non_null(strstr(m.reason, "does not belong to an orbit"));
   ric_multipliers_clear(&m);
-  solved_clear(&x);
+  solved_orbit_clear(&x);
 }
 
 static void bad_arguments_are_refused(void **state) {
   (void)state;
-  solved x = solved_by(RIC_METHOD_IMPULSE, example1_at(0.1));
+  solved_orbit x = solve_orbit(RIC_METHOD_IMPULSE, example1_at(0.1));
   ric_orbit_multiplier_options options = ric_orbit_multiplier_options_default();
   ric_multipliers m;
   ric_error error;
@@ -188,7 +188,7 @@ static void bad_arguments_are_refused(void **state) {
       ric_orbit_multipliers(x.solver, &x.scenario.chain, x.scenario.pattern, &x.orbit, &options, &m, &error),
       RIC_EINVAL);
   ric_multipliers_clear(&m);
-  solved_clear(&x);
+  solved_orbit_clear(&x);
 }
 
 int main(void) {

@@ -1,7 +1,7 @@
 /* Pieces of long lattices against the recurrence written down particle by particle for the whole lattice. */
 #include "support.h"
 
-#include "witness/moved.h"
+#include "witness/system_flow.h"
 #include "witness/random_lattice.h"
 
 enum { MOST = 1000, LEVELS = 31 };
@@ -66,7 +66,7 @@ static void whole_series(const ric_lattice *l, const double *q, const double *v,
 }
 
 /* Every coefficient of every piece; the pieces in turn cover the lattice. */
-static void compare(const moved *m, const series *whole, size_t n) {
+static void compare(const system_flow *m, const series *whole, size_t n) {
   size_t next = 0;
   for (size_t k = 0; k < ric_flow_pieces(m->flow); k++) {
     ric_segment s = ric_flow_piece(m->flow, k);
@@ -89,13 +89,13 @@ static void check(size_t n, ric_ends ends, unsigned with, int order) {
   options.longest_step = 0.5;
   random_lattice_set(&r, &source, n, ends, with);
   random_lattice_state(&source, n, q, v);
-  moved m = moved_lattice(&r.lattice, NULL, 0, &options);
-  moved_start(&m, 0.7, q, v);
+  system_flow m = system_flow_of_lattice(&r.lattice, NULL, 0, &options);
+  system_flow_start(&m, 0.7, q, v);
   assert_int_equal(ric_flow_step(m.flow, 5, NULL), RIC_OK);
   double length = ric_flow_piece(m.flow, 0).length;
   whole_series(&r.lattice, q, v, 0.7, length, order, &whole);
   compare(&m, &whole, n);
-  moved_clear(&m);
+  system_flow_clear(&m);
 }
 
 static void for_all_sizes_and_ends(unsigned with, int order) {
@@ -157,15 +157,15 @@ static void one_value_for_all_is_the_same_as_arrays_of_it(void **state) {
       many.links = links;
       many.on_sites = on_sites;
       many.masses = masses;
-      moved a = moved_lattice(&one, NULL, 0, NULL), b = moved_lattice(&many, NULL, 0, NULL);
-      moved_start(&a, 0, q, v);
-      moved_start(&b, 0, q, v);
-      moved_run(&a, 2, 0);
-      moved_run(&b, 2, 1);
+      system_flow a = system_flow_of_lattice(&one, NULL, 0, NULL), b = system_flow_of_lattice(&many, NULL, 0, NULL);
+      system_flow_start(&a, 0, q, v);
+      system_flow_start(&b, 0, q, v);
+      system_flow_run(&a, 2, 0);
+      system_flow_run(&b, 2, 1);
       assert_memory_equal(ric_flow_q(a.flow), ric_flow_q(b.flow), sizes[k] * sizeof *q);
       assert_memory_equal(ric_flow_u(a.flow), ric_flow_u(b.flow), sizes[k] * sizeof *v);
-      moved_clear(&a);
-      moved_clear(&b);
+      system_flow_clear(&a);
+      system_flow_clear(&b);
     }
 }
 

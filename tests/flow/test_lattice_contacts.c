@@ -5,16 +5,16 @@
 #include <gsl/gsl_integration.h>
 
 #include "flow/flow_method.h"
-#include "witness/moved.h"
+#include "witness/system_flow.h"
 #include "witness/random_lattice.h"
 
 enum { MOST = 600 };
 
-static void set(const moved *m, size_t obstacle, contact_state state) {
+static void set(const system_flow *m, size_t obstacle, contact_state state) {
   m->flow->contact[obstacle] = (unsigned char)state;
 }
 
-static double reaction_of(const moved *m, size_t obstacle, double t, const double *q, const double *v) {
+static double reaction_of(const system_flow *m, size_t obstacle, double t, const double *q, const double *v) {
   double lambda = NAN;
   const ric_system *s = m->system;
   assert_null(s->model->reaction(s, m->flow->contact, obstacle, t, q, v, &lambda));
@@ -36,22 +36,22 @@ static void a_held_particle_is_a_wall(void **state) {
   chain.particles = N - 1;
   chain.ends = RIC_ENDS_FIXED;
   ric_obstacle floor = ric_obstacle_floor(0, 0);
-  moved a = moved_lattice(&ring, &floor, 1, NULL), b = moved_lattice(&chain, NULL, 0, NULL);
+  system_flow a = system_flow_of_lattice(&ring, &floor, 1, NULL), b = system_flow_of_lattice(&chain, NULL, 0, NULL);
   set(&a, 0, CONTACT_HELD);
-  moved_start(&a, 0, q, v);
-  moved_start(&b, 0, q + 1, v + 1);
-  moved_run(&a, 20, 0);
-  moved_run(&b, 20, 0);
+  system_flow_start(&a, 0, q, v);
+  system_flow_start(&b, 0, q + 1, v + 1);
+  system_flow_run(&a, 20, 0);
+  system_flow_run(&b, 20, 0);
   assert_true(ric_flow_q(a.flow)[0] == 0 && ric_flow_u(a.flow)[0] == 0);
   for (size_t i = 1; i < N; i++) {
     assert_close(ric_flow_q(a.flow)[i], ric_flow_q(b.flow)[i - 1], 1e-13);
     assert_close(ric_flow_u(a.flow)[i], ric_flow_u(b.flow)[i - 1], 1e-13);
   }
-  moved_clear(&a);
-  moved_clear(&b);
+  system_flow_clear(&a);
+  system_flow_clear(&b);
 }
 
-static void check_reaction(const moved *m, size_t obstacle) {
+static void check_reaction(const system_flow *m, size_t obstacle) {
   static double q[MOST], v[MOST];
   double c[RIC_POLY_DEGREE + 1];
   int degree = m->flow->method->reaction(m->flow, obstacle, c);
@@ -84,17 +84,17 @@ static void reaction_polynomial_is_the_force_on_a_held_particle(void **state) {
         obstacles[j] = j % 2 ? ric_obstacle_wall(at[j], q[at[j]]) : ric_obstacle_floor(at[j], q[at[j]]);
         v[at[j]] = 0;
       }
-      moved m = moved_lattice(&r.lattice, obstacles, 5, NULL);
+      system_flow m = system_flow_of_lattice(&r.lattice, obstacles, 5, NULL);
       for (size_t j = 0; j < 5; j++)
         set(&m, j, CONTACT_HELD);
-      moved_start(&m, 0.5, q, v);
+      system_flow_start(&m, 0.5, q, v);
       for (int step = 0; step < 2; step++) {
         assert_int_equal(ric_flow_step(m.flow, 9, NULL), RIC_OK);
         for (size_t j = 0; j < 5; j++)
           check_reaction(&m, j);
         ric_flow_accept(m.flow, 1);
       }
-      moved_clear(&m);
+      system_flow_clear(&m);
     }
 }
 
@@ -105,7 +105,7 @@ static void a_held_contact_has_no_rates_and_feels_what_presses_beside_it(void **
   ric_obstacle obstacles[] = {ric_obstacle_floor(0, -1), ric_obstacle_wall(0, -2)};
   obstacles[1].stiffness = 4; /* pressed by 1: pushes down with 4 */
   double q[] = {-1, 1}, v[] = {0, 2}, q_rate[2], u_rate[2], c[RIC_POLY_DEGREE + 1];
-  moved m = moved_lattice(&lattice, obstacles, 2, NULL);
+  system_flow m = system_flow_of_lattice(&lattice, obstacles, 2, NULL);
   set(&m, 0, CONTACT_HELD);
   set(&m, 1, CONTACT_PRESSED);
   assert_null(m.system->model->rate(m.system, m.flow->contact, 0, q, v, q_rate, u_rate));
@@ -113,11 +113,11 @@ static void a_held_contact_has_no_rates_and_feels_what_presses_beside_it(void **
   assert_close(u_rate[1], -1 - 0.5 * 2, 1e-15);
   double force = 1 + 0.5 * 2 - 4; /* spring, link, Hertz */
   assert_close(reaction_of(&m, 0, 0, q, v), -force, 1e-15);
-  moved_start(&m, 0, q, v);
+  system_flow_start(&m, 0, q, v);
   assert_int_equal(ric_flow_step(m.flow, 1, NULL), RIC_OK);
   m.flow->method->reaction(m.flow, 0, c);
   assert_close(c[0], -force, 1e-15);
-  moved_clear(&m);
+  system_flow_clear(&m);
 }
 
 /* Oscillator on a Hertz contact, approached with the speed 1: v^2 = 1 - 2 u - u^2 - 0.8 k u^{5/2}. */
@@ -151,7 +151,7 @@ static double duration_by_quadrature(double k) {
 }
 
 /* Steps until the gap opens; returns that time. The first step begins at a gap of zero. */
-static double run_to_parting(const moved *m, const ric_obstacle *o) {
+static double run_to_parting(const system_flow *m, const ric_obstacle *o) {
   ric_error error = {0};
   for (int steps = 0; steps < 300; steps++) {
     double c[RIC_POLY_DEGREE + 1], at = 1;
@@ -180,14 +180,14 @@ static void hertz_contact_lasts_as_long_as_its_quadrature_says(void **state) {
         ric_lattice lattice = ric_lattice_default(1, RIC_ENDS_FREE);
         ric_obstacle o = {.side = side, .position = -side, .restitution = 1, .stiffness = stiffness[k]};
         double q = o.position + side * gaps[g], v = -side;
-        moved m = moved_lattice(&lattice, &o, 1, NULL);
+        system_flow m = system_flow_of_lattice(&lattice, &o, 1, NULL);
         set(&m, 0, CONTACT_PRESSED);
-        moved_start(&m, 0, &q, &v);
-        double energy = moved_energy(&m), duration = run_to_parting(&m, &o);
+        system_flow_start(&m, 0, &q, &v);
+        double energy = system_flow_energy(&m), duration = run_to_parting(&m, &o);
         assert_close(duration, duration_by_quadrature(stiffness[k]), 1e-12);
-        assert_close(moved_energy(&m), energy, 1e-13 * energy);
+        assert_close(system_flow_energy(&m), energy, 1e-13 * energy);
         assert_close(*ric_flow_u(m.flow), side, 1e-12);
-        moved_clear(&m);
+        system_flow_clear(&m);
       }
 }
 
@@ -197,15 +197,15 @@ static void hertz_contact_at_a_late_time_keeps_its_energy(void **state) {
   ric_obstacle o = ric_obstacle_floor(0, -1);
   o.stiffness = 1e3;
   const double q = -1, v = -1, start = 1e5;
-  moved m = moved_lattice(&lattice, &o, 1, NULL);
+  system_flow m = system_flow_of_lattice(&lattice, &o, 1, NULL);
   set(&m, 0, CONTACT_PRESSED);
-  moved_start(&m, start, &q, &v);
-  double energy = moved_energy(&m);
+  system_flow_start(&m, start, &q, &v);
+  double energy = system_flow_energy(&m);
   /* The time itself is known to 1.5e-11; a step without force of 4e-12 (1 + t) changes the energy by less than 1e-12.
    */
   assert_close(run_to_parting(&m, &o) - start, duration_by_quadrature(1e3), 2e-9);
-  assert_close(moved_energy(&m), energy, 1e-11 * energy);
-  moved_clear(&m);
+  assert_close(system_flow_energy(&m), energy, 1e-11 * energy);
+  system_flow_clear(&m);
 }
 
 /* Deep enough never to part: a static load. */
@@ -215,13 +215,13 @@ static void a_pressed_contact_swings_about_its_load(void **state) {
   ric_obstacle o = ric_obstacle_floor(0, 1);
   o.stiffness = 100;
   const double q = 0.97, v = 0;
-  moved m = moved_lattice(&lattice, &o, 1, NULL);
+  system_flow m = system_flow_of_lattice(&lattice, &o, 1, NULL);
   set(&m, 0, CONTACT_PRESSED);
-  moved_start(&m, 0, &q, &v);
-  double energy = moved_energy(&m);
-  moved_run(&m, 200, 1);
-  assert_close(moved_energy(&m), energy, 1e-13 * energy);
-  moved_clear(&m);
+  system_flow_start(&m, 0, &q, &v);
+  double energy = system_flow_energy(&m);
+  system_flow_run(&m, 200, 1);
+  assert_close(system_flow_energy(&m), energy, 1e-13 * energy);
+  system_flow_clear(&m);
 }
 
 /* Many contacts that press in a long lattice, also in the halos of its pieces and around the ring, against the same
@@ -239,27 +239,27 @@ static void pressed_contacts_of_a_long_ring_keep_its_energy(void **state) {
     obstacles[i] = i % 2 ? ric_obstacle_floor(i, 2) : ric_obstacle_wall(i, -2); /* pressed by about 2 */
     obstacles[i].stiffness = random_uniform(&source, 0.02, 0.2);                /* not so strong that they part */
   }
-  moved m = moved_lattice(&lattice, obstacles, MOST, NULL);
+  system_flow m = system_flow_of_lattice(&lattice, obstacles, MOST, NULL);
   for (size_t i = 0; i < MOST; i++)
     set(&m, i, CONTACT_PRESSED);
-  moved_start(&m, 0, q, v);
-  double energy = moved_energy(&m);
-  moved_run(&m, 1, 1);
-  assert_close(moved_energy(&m), energy, 1e-13 * energy);
+  system_flow_start(&m, 0, q, v);
+  double energy = system_flow_energy(&m);
+  system_flow_run(&m, 1, 1);
+  assert_close(system_flow_energy(&m), energy, 1e-13 * energy);
   memcpy(there, ric_flow_q(m.flow), sizeof there);
-  moved_run(&m, 0, 0);
+  system_flow_run(&m, 0, 0);
   for (size_t i = 0; i < MOST; i++)
     assert_close(ric_flow_q(m.flow)[i], q[i], 1e-13);
-  moved_clear(&m);
+  system_flow_clear(&m);
   ric_flow_options fine = {.longest_step = 0.05};
-  m = moved_lattice(&lattice, obstacles, MOST, &fine);
+  m = system_flow_of_lattice(&lattice, obstacles, MOST, &fine);
   for (size_t i = 0; i < MOST; i++)
     set(&m, i, CONTACT_PRESSED);
-  moved_start(&m, 0, q, v);
-  moved_run(&m, 1, 0);
+  system_flow_start(&m, 0, q, v);
+  system_flow_run(&m, 1, 0);
   for (size_t i = 0; i < MOST; i++)
     assert_close(ric_flow_q(m.flow)[i], there[i], 1e-13);
-  moved_clear(&m);
+  system_flow_clear(&m);
 }
 
 /* Contacts of a neighbour that opens and closes do not disturb one that goes on; and steps recover after both. */
@@ -270,16 +270,16 @@ static void steps_recover_after_a_contact(void **state) {
   ric_obstacle o = ric_obstacle_floor(1, -1);
   o.stiffness = 1e4;
   double q[] = {0.2, -1}, v[] = {0, -0.5};
-  moved m = moved_lattice(&lattice, &o, 1, NULL);
+  system_flow m = system_flow_of_lattice(&lattice, &o, 1, NULL);
   set(&m, 0, CONTACT_PRESSED);
-  moved_start(&m, 0, q, v);
+  system_flow_start(&m, 0, q, v);
   run_to_parting(&m, &o);
   set(&m, 0, CONTACT_OPEN);
-  moved_start(&m, ric_flow_time(m.flow), ric_flow_q(m.flow), ric_flow_u(m.flow));
+  system_flow_start(&m, ric_flow_time(m.flow), ric_flow_q(m.flow), ric_flow_u(m.flow));
   unsigned long long before = ric_flow_counted(m.flow).steps;
-  moved_run(&m, ric_flow_time(m.flow) + 4, 0);
+  system_flow_run(&m, ric_flow_time(m.flow) + 4, 0);
   assert_true(ric_flow_counted(m.flow).steps - before <= 3);
-  moved_clear(&m);
+  system_flow_clear(&m);
 }
 
 /* Energy of a contact that begins with no speed at all, pushed in by the spring. */
@@ -289,19 +289,19 @@ static void a_contact_that_begins_at_rest_is_pushed_in(void **state) {
   ric_obstacle o = ric_obstacle_floor(0, 1);
   o.stiffness = 100;
   const double q = 1, v = 0;
-  moved m = moved_lattice(&lattice, &o, 1, NULL);
+  system_flow m = system_flow_of_lattice(&lattice, &o, 1, NULL);
   set(&m, 0, CONTACT_PRESSED);
-  moved_start(&m, 0, &q, &v);
-  double energy = moved_energy(&m), lowest = 1;
+  system_flow_start(&m, 0, &q, &v);
+  double energy = system_flow_energy(&m), lowest = 1;
   for (int i = 0; i < 200 && ric_flow_time(m.flow) < 0.3; i++) {
     assert_int_equal(ric_flow_step(m.flow, 0.3, NULL), RIC_OK);
     ric_flow_accept(m.flow, 1);
     lowest = fmin(lowest, *ric_flow_q(m.flow));
-    assert_close(moved_energy(&m), energy, 1e-13 * energy);
+    assert_close(system_flow_energy(&m), energy, 1e-13 * energy);
   }
   assert_close(ric_flow_time(m.flow), 0.3, 0);
   assert_true(lowest < 0.96);
-  moved_clear(&m);
+  system_flow_clear(&m);
 }
 
 int main(void) {

@@ -2,15 +2,15 @@
 #include "support.h"
 
 #include "witness/modal_motion.h"
-#include "witness/moved.h"
+#include "witness/system_flow.h"
 #include "witness/random_lattice.h"
 
 enum { MOST = 40, LONG = 1000 };
 
 static const size_t sizes[] = {1, 2, 3, 4, 5, 8, 13, 40};
 
-static void for_all_chains(void (*holds)(const ric_chain *chain, const moved *m, modal_motion *motion, const double *q,
-                                         const double *v)) {
+static void for_all_chains(void (*holds)(const ric_chain *chain, const system_flow *m, modal_motion *motion,
+                                         const double *q, const double *v)) {
   const double couplings[] = {0, 0.1, 1.3};
   random_source source = {.state = 14};
   for (int ends = RIC_ENDS_PERIODIC; ends <= RIC_ENDS_FREE; ends++)
@@ -20,13 +20,13 @@ static void for_all_chains(void (*holds)(const ric_chain *chain, const moved *m,
         ric_chain chain = ric_chain_default(sizes[s], couplings[g]);
         chain.ends = (ric_ends)ends;
         ric_lattice lattice = ric_lattice_of_chain(&chain);
-        moved m = moved_lattice(&lattice, NULL, 0, NULL);
+        system_flow m = system_flow_of_lattice(&lattice, NULL, 0, NULL);
         modal_motion motion = modal_motion_create(&chain);
         random_lattice_state(&source, chain.particles, q, v);
         modal_motion_set(&motion, q, v);
         holds(&chain, &m, &motion, q, v);
         modal_motion_clear(&motion);
-        moved_clear(&m);
+        system_flow_clear(&m);
       }
 }
 
@@ -35,11 +35,11 @@ static double rounding_of(const modal_motion *motion, int order) {
   return 1e-15 * 9 * 10 * modal_motion_bound(motion, order);
 }
 
-static void check_exact(const ric_chain *chain, const moved *m, modal_motion *motion, const double *q,
+static void check_exact(const ric_chain *chain, const system_flow *m, modal_motion *motion, const double *q,
                         const double *v) {
   double at_q[MOST], at_v[MOST], exact_q[MOST], exact_v[MOST];
   for (int direction = -1; direction <= 1; direction += 2) {
-    moved_start(m, 7, q, v);
+    system_flow_start(m, 7, q, v);
     assert_int_equal(ric_flow_step(m->flow, 7 + 100 * direction, NULL), RIC_OK);
     assert_int_equal(ric_flow_pieces(m->flow), 1);
     ric_segment s = ric_flow_piece(m->flow, 0);
@@ -60,11 +60,11 @@ static void segments_equal_the_modal_motion_to_rounding_in_both_directions(void 
   for_all_chains(check_exact);
 }
 
-static void check_energy(const ric_chain *chain, const moved *m, modal_motion *motion, const double *q,
+static void check_energy(const ric_chain *chain, const system_flow *m, modal_motion *motion, const double *q,
                          const double *v) {
   double at_q[MOST], at_v[MOST], energy = ric_chain_energy(chain, q, v);
   (void)motion;
-  moved_start(m, 0, q, v);
+  system_flow_start(m, 0, q, v);
   assert_int_equal(ric_flow_step(m->flow, 100, NULL), RIC_OK);
   ric_segment s = ric_flow_piece(m->flow, 0);
   for (int k = 0; k <= 10; k++) {
@@ -78,11 +78,11 @@ static void energy_is_constant_along_a_segment(void **state) {
   for_all_chains(check_energy);
 }
 
-static void check_return(const ric_chain *chain, const moved *m, modal_motion *motion, const double *q,
+static void check_return(const ric_chain *chain, const system_flow *m, modal_motion *motion, const double *q,
                          const double *v) {
-  moved_start(m, 0, q, v);
-  moved_run(m, 20, 0);
-  moved_run(m, 0, 0);
+  system_flow_start(m, 0, q, v);
+  system_flow_run(m, 20, 0);
+  system_flow_run(m, 0, 0);
   for (size_t i = 0; i < chain->particles; i++) { /* forty steps at the most */
     assert_close(ric_flow_q(m->flow)[i], q[i], 40 * rounding_of(motion, 0));
     assert_close(ric_flow_u(m->flow)[i], v[i], 40 * rounding_of(motion, 1));
@@ -103,18 +103,18 @@ static void long_chains_in_pieces_follow_the_modal_motion(void **state) {
     ric_chain chain = ric_chain_default(LONG, 0.6);
     chain.ends = (ric_ends)ends;
     ric_lattice lattice = ric_lattice_of_chain(&chain);
-    moved m = moved_lattice(&lattice, NULL, 0, NULL);
+    system_flow m = system_flow_of_lattice(&lattice, NULL, 0, NULL);
     modal_motion motion = modal_motion_create(&chain);
     modal_motion_set(&motion, q, v);
     modal_motion_state(&motion, 10, exact_q, exact_v);
-    moved_start(&m, 0, q, v);
-    moved_run(&m, 10, ends % 2);
+    system_flow_start(&m, 0, q, v);
+    system_flow_run(&m, 10, ends % 2);
     for (size_t i = 0; i < LONG; i++) {
       assert_close(ric_flow_q(m.flow)[i], exact_q[i], 1e-13); /* the modal sum has a thousand terms */
       assert_close(ric_flow_u(m.flow)[i], exact_v[i], 1e-13 * ric_chain_frequency_max(&chain));
     }
     modal_motion_clear(&motion);
-    moved_clear(&m);
+    system_flow_clear(&m);
   }
 }
 
@@ -128,18 +128,18 @@ static void energy_of_a_long_run_with_reflections_is_kept(void **state) {
   lattice.link.linear = 0.09;
   random_source source = {.state = 17};
   double q[N], v[N];
-  moved m = moved_lattice(&lattice, NULL, 0, NULL);
+  system_flow m = system_flow_of_lattice(&lattice, NULL, 0, NULL);
   random_lattice_state(&source, N, q, v);
-  moved_start(&m, 0, q, v);
-  double energy = moved_energy(&m);
+  system_flow_start(&m, 0, q, v);
+  double energy = system_flow_energy(&m);
   for (int k = 1; k <= PERIODS; k++) {
-    moved_run(&m, k * period, 0);
+    system_flow_run(&m, k * period, 0);
     memcpy(v, ric_flow_u(m.flow), sizeof v);
     v[k % N] = -v[k % N];
-    moved_start(&m, k * period, ric_flow_q(m.flow), v);
+    system_flow_start(&m, k * period, ric_flow_q(m.flow), v);
   }
-  assert_close(moved_energy(&m), energy, 1e-12 * energy);
-  moved_clear(&m);
+  assert_close(system_flow_energy(&m), energy, 1e-12 * energy);
+  system_flow_clear(&m);
 }
 
 static void steps_land_on_the_stop_without_a_sliver(void **state) {
@@ -147,10 +147,10 @@ static void steps_land_on_the_stop_without_a_sliver(void **state) {
   const double ends[] = {1e-9, 1, 2.3, 5, 17.123456789, -3.3};
   ric_lattice lattice = ric_lattice_default(3, RIC_ENDS_FREE);
   double q[] = {1, 0, -1}, v[] = {0, 1, 0};
-  moved m = moved_lattice(&lattice, NULL, 0, NULL);
+  system_flow m = system_flow_of_lattice(&lattice, NULL, 0, NULL);
   for (size_t k = 0; k < sizeof ends / sizeof *ends; k++) {
     double shortest = INFINITY, longest = 0;
-    moved_start(&m, 0, q, v);
+    system_flow_start(&m, 0, q, v);
     while (ric_flow_time(m.flow) != ends[k]) {
       double before = ric_flow_time(m.flow);
       assert_int_equal(ric_flow_step(m.flow, ends[k], NULL), RIC_OK);
@@ -161,9 +161,9 @@ static void steps_land_on_the_stop_without_a_sliver(void **state) {
     assert_true(shortest > 0.49 * longest);
   }
   ric_error error;
-  moved_start(&m, 1, q, v);
+  system_flow_start(&m, 1, q, v);
   assert_int_equal(ric_flow_step(m.flow, 1, &error), RIC_EINVAL);
-  moved_clear(&m);
+  system_flow_clear(&m);
 }
 
 static void a_part_of_a_step_is_the_value_of_its_segment(void **state) {
@@ -172,9 +172,9 @@ static void a_part_of_a_step_is_the_value_of_its_segment(void **state) {
   random_source source = {.state = 18};
   ric_lattice lattice = ric_lattice_default(LONG, RIC_ENDS_PERIODIC);
   lattice.link = (ric_spring){.linear = 0.3, .cubic = 0.2};
-  moved m = moved_lattice(&lattice, NULL, 0, NULL);
+  system_flow m = system_flow_of_lattice(&lattice, NULL, 0, NULL);
   random_lattice_state(&source, LONG, q, v);
-  moved_start(&m, 1, q, v);
+  system_flow_start(&m, 1, q, v);
   const double parts[] = {0.3, 1, 0};
   for (size_t k = 0; k < 3; k++) {
     assert_int_equal(ric_flow_step(m.flow, 9, NULL), RIC_OK);
@@ -188,7 +188,7 @@ static void a_part_of_a_step_is_the_value_of_its_segment(void **state) {
     assert_memory_equal(ric_flow_q(m.flow), at_q, sizeof at_q);
     assert_memory_equal(ric_flow_u(m.flow), at_v, sizeof at_v);
   }
-  moved_clear(&m);
+  system_flow_clear(&m);
 }
 
 /* m q'' + c q' + k q = F cos(w t) + G sin(w t): the steady motion, and a free one on top of it. */
@@ -205,15 +205,15 @@ static void forced_damped_oscillator_follows_its_closed_form(void **state) {
   double A = (a * F - b * G) / norm, B = (b * F + a * G) / norm; /* steady: A cos + B sin */
   double decay = c / (2 * mass), turn = sqrt(k / mass - decay * decay);
   double q = A + 1, v = B * w - decay; /* free part exp(-decay t) cos(turn t) */
-  moved m = moved_lattice(&lattice, NULL, 0, NULL);
-  moved_start(&m, 0, &q, &v);
-  moved_run(&m, end, 0);
+  system_flow m = system_flow_of_lattice(&lattice, NULL, 0, NULL);
+  system_flow_start(&m, 0, &q, &v);
+  system_flow_run(&m, end, 0);
   double fade = exp(-decay * end);
   assert_close(*ric_flow_q(m.flow), A * cos(w * end) + B * sin(w * end) + fade * cos(turn * end), 1e-13);
   assert_close(*ric_flow_u(m.flow),
                w * (B * cos(w * end) - A * sin(w * end)) - fade * (decay * cos(turn * end) + turn * sin(turn * end)),
                1e-13);
-  moved_clear(&m);
+  system_flow_clear(&m);
 }
 
 static void a_forced_particle_starts_from_rest(void **state) {
@@ -223,11 +223,11 @@ static void a_forced_particle_starts_from_rest(void **state) {
   lattice.on_site = (ric_spring){0};
   lattice.frequency = 1;
   lattice.force_sin = &G;
-  moved m = moved_lattice(&lattice, NULL, 0, NULL);
-  moved_start(&m, 0, &zero, &zero);
-  moved_run(&m, end, 0);
+  system_flow m = system_flow_of_lattice(&lattice, NULL, 0, NULL);
+  system_flow_start(&m, 0, &zero, &zero);
+  system_flow_run(&m, end, 0);
   assert_close(*ric_flow_q(m.flow), G * (end - sin(end)), 1e-17);
-  moved_clear(&m);
+  system_flow_clear(&m);
 }
 
 static void a_free_particle_flies_straight(void **state) {
@@ -235,12 +235,12 @@ static void a_free_particle_flies_straight(void **state) {
   const double q = 1, v = -0.25;
   ric_lattice lattice = ric_lattice_default(1, RIC_ENDS_FREE);
   lattice.on_site = (ric_spring){0};
-  moved m = moved_lattice(&lattice, NULL, 0, NULL);
-  moved_start(&m, 0, &q, &v);
-  moved_run(&m, 1000, 0);
+  system_flow m = system_flow_of_lattice(&lattice, NULL, 0, NULL);
+  system_flow_start(&m, 0, &q, &v);
+  system_flow_run(&m, 1000, 0);
   assert_close(*ric_flow_q(m.flow), -249, 0);
   assert_int_equal(ric_flow_counted(m.flow).steps, 1);
-  moved_clear(&m);
+  system_flow_clear(&m);
 }
 
 static void duffing_oscillator_keeps_its_energy(void **state) {
@@ -250,13 +250,13 @@ static void duffing_oscillator_keeps_its_energy(void **state) {
     double q = amplitudes[k], v = 0;
     ric_lattice lattice = ric_lattice_default(1, RIC_ENDS_FREE);
     lattice.on_site.cubic = 1;
-    moved m = moved_lattice(&lattice, NULL, 0, NULL);
-    moved_start(&m, 0, &q, &v);
-    double energy = moved_energy(&m);
-    moved_run(&m, 1000 / (1 + amplitudes[k]), 0); /* periods shrink like the amplitude */
-    assert_close(moved_energy(&m), energy, 2e-13 * energy);
+    system_flow m = system_flow_of_lattice(&lattice, NULL, 0, NULL);
+    system_flow_start(&m, 0, &q, &v);
+    double energy = system_flow_energy(&m);
+    system_flow_run(&m, 1000 / (1 + amplitudes[k]), 0); /* periods shrink like the amplitude */
+    assert_close(system_flow_energy(&m), energy, 2e-13 * energy);
     assert_true(ric_flow_counted(m.flow).steps < 3000);
-    moved_clear(&m);
+    system_flow_clear(&m);
   }
 }
 
@@ -274,22 +274,22 @@ static void quartic_chain_returns_and_does_not_depend_on_the_step(void **state) 
   double q[N], v[N], there[N], end = 5;
   ric_lattice lattice = quartic_chain(N);
   random_lattice_state(&source, N, q, v);
-  moved m = moved_lattice(&lattice, NULL, 0, NULL);
-  moved_start(&m, 0, q, v);
-  moved_run(&m, end, 1);
+  system_flow m = system_flow_of_lattice(&lattice, NULL, 0, NULL);
+  system_flow_start(&m, 0, q, v);
+  system_flow_run(&m, end, 1);
   memcpy(there, ric_flow_q(m.flow), sizeof there);
-  moved_run(&m, 0, 0);
+  system_flow_run(&m, 0, 0);
   for (size_t i = 0; i < N; i++)
     assert_close(ric_flow_q(m.flow)[i], q[i], 1e-12); /* errors of 1e-16 per step grow with the motion's instability */
   ric_flow_options halved = ric_flow_options_default();
   halved.longest_step = end / (double)ric_flow_counted(m.flow).steps; /* half of the mean step there and back */
-  moved fine = moved_lattice(&lattice, NULL, 0, &halved);
-  moved_start(&fine, 0, q, v);
-  moved_run(&fine, end, 0);
+  system_flow fine = system_flow_of_lattice(&lattice, NULL, 0, &halved);
+  system_flow_start(&fine, 0, q, v);
+  system_flow_run(&fine, end, 0);
   for (size_t i = 0; i < N; i++)
     assert_close(ric_flow_q(fine.flow)[i], there[i], 1e-12);
-  moved_clear(&m);
-  moved_clear(&fine);
+  system_flow_clear(&m);
+  system_flow_clear(&fine);
 }
 
 /* q'' = q^3 from q = 1 with the energy of a motion that escapes: q = 1 / (1 - t / sqrt 2). */
@@ -299,8 +299,8 @@ static void a_motion_that_blows_up_is_refused_with_its_time(void **state) {
   ric_lattice lattice = ric_lattice_default(1, RIC_ENDS_FREE);
   lattice.on_site = (ric_spring){.cubic = -1};
   ric_error error = {0};
-  moved m = moved_lattice(&lattice, NULL, 0, NULL);
-  moved_start(&m, 0, &q, &v);
+  system_flow m = system_flow_of_lattice(&lattice, NULL, 0, NULL);
+  system_flow_start(&m, 0, &q, &v);
   int steps = 0;
   while (ric_flow_step(m.flow, 2, &error) == RIC_OK && steps++ < 1000)
     ric_flow_accept(m.flow, 1);
@@ -309,7 +309,7 @@ static void a_motion_that_blows_up_is_refused_with_its_time(void **state) {
   assert_non_null(strstr(error.message, "q[0]"));
   assert_close(ric_flow_time(m.flow), sqrt(2), 1e-10);
   assert_true(*ric_flow_q(m.flow) > 1e9);
-  moved_clear(&m);
+  system_flow_clear(&m);
 }
 
 static void an_unstable_linear_lattice_ends_before_infinity(void **state) {
@@ -322,13 +322,13 @@ static void an_unstable_linear_lattice_ends_before_infinity(void **state) {
     ric_error error = {0};
     for (size_t i = 0; i < particles[k]; i++)
       q[i] = 1;
-    moved m = moved_lattice(&lattice, NULL, 0, NULL);
-    moved_start(&m, 0, q, v);
+    system_flow m = system_flow_of_lattice(&lattice, NULL, 0, NULL);
+    system_flow_start(&m, 0, q, v);
     while (ric_flow_step(m.flow, 1e5, &error) == RIC_OK)
       ric_flow_accept(m.flow, 1);
     assert_int_equal(error.status, RIC_ENUMERIC);
     assert_true(ric_flow_time(m.flow) > 600 && ric_flow_time(m.flow) < 720); /* ln 1e308 = 709 */
-    moved_clear(&m);
+    system_flow_clear(&m);
   }
 }
 

@@ -1,7 +1,7 @@
 /* Order of convergence of the Taylor flow, and what its tolerance means. */
 #include "support.h"
 
-#include "witness/moved.h"
+#include "witness/system_flow.h"
 #include "witness/random_lattice.h"
 
 enum { N = 5 };
@@ -23,19 +23,20 @@ static const ric_lattice *everything(void) {
 /* Euclidean distance from a run with the default options. */
 static double distance(unsigned seed, const ric_flow_options *options) {
   double q[N], v[N], squares = 0;
-  moved exact = moved_lattice(everything(), NULL, 0, NULL), m = moved_lattice(everything(), NULL, 0, options);
+  system_flow exact = system_flow_of_lattice(everything(), NULL, 0, NULL),
+              m = system_flow_of_lattice(everything(), NULL, 0, options);
   state_of(seed, q, v);
-  moved_start(&exact, 0, q, v);
-  moved_start(&m, 0, q, v);
-  moved_run(&exact, end, 0);
-  moved_run(&m, end, 0);
+  system_flow_start(&exact, 0, q, v);
+  system_flow_start(&m, 0, q, v);
+  system_flow_run(&exact, end, 0);
+  system_flow_run(&m, end, 0);
   for (size_t i = 0; i < N; i++) {
     double in_q = ric_flow_q(m.flow)[i] - ric_flow_q(exact.flow)[i];
     double in_v = ric_flow_u(m.flow)[i] - ric_flow_u(exact.flow)[i];
     squares += in_q * in_q + in_v * in_v;
   }
-  moved_clear(&exact);
-  moved_clear(&m);
+  system_flow_clear(&exact);
+  system_flow_clear(&m);
   return sqrt(squares);
 }
 
@@ -68,18 +69,18 @@ static void every_fixed_step_has_its_length_and_the_last_the_rest(void **state) 
   double q[N], v[N];
   ric_flow_options options = ric_flow_options_default();
   options.step = 0.3;
-  moved m = moved_lattice(everything(), NULL, 0, &options);
+  system_flow m = system_flow_of_lattice(everything(), NULL, 0, &options);
   state_of(73, q, v);
-  moved_start(&m, 0, q, v);
+  system_flow_start(&m, 0, q, v);
   for (int k = 1; k <= 4; k++) {
     assert_int_equal(ric_flow_step(m.flow, 1, NULL), RIC_OK);
     assert_close(ric_flow_piece(m.flow, 0).length, k < 4 ? 0.3 : 0.1, 1e-15);
     ric_flow_accept(m.flow, 1);
   }
   assert_close(ric_flow_time(m.flow), 1, 0);
-  moved_run(&m, 4, 0);
+  system_flow_run(&m, 4, 0);
   assert_int_equal(ric_flow_counted(m.flow).steps, 14);
-  moved_clear(&m);
+  system_flow_clear(&m);
 }
 
 /* The local error is relative to the state; a few dozen steps on a motion that is not chaotic multiply it by less than
@@ -111,12 +112,12 @@ static void longest_step_is_a_bound(void **state) {
   ric_flow_options options = ric_flow_options_default();
   options.longest_step = 0.01;
   double q[N], v[N];
-  moved m = moved_lattice(everything(), NULL, 0, &options);
+  system_flow m = system_flow_of_lattice(everything(), NULL, 0, &options);
   state_of(73, q, v);
-  moved_start(&m, 0, q, v);
-  moved_run(&m, 1, 0);
+  system_flow_start(&m, 0, q, v);
+  system_flow_run(&m, 1, 0);
   assert_in_range(ric_flow_counted(m.flow).steps, 100, 101);
-  moved_clear(&m);
+  system_flow_clear(&m);
 }
 
 int main(void) {

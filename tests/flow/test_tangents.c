@@ -3,7 +3,7 @@
 
 #include "witness/derivative.h"
 #include "witness/random_lattice.h"
-#include "witness/recorded.h"
+#include "witness/recorded_run.h"
 
 enum { MOST = 24, SIZE = 4 * MOST * MOST };
 

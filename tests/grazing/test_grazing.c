@@ -3,7 +3,7 @@
 #include "support.h"
 
 #include "witness/forced_oscillator.h"
-#include "witness/grazed.h"
+#include "witness/grazing_family.h"
 #include "witness/van_der_pol.h"
 
 static const double two_pi = 6.283185307179586;
@@ -37,12 +37,12 @@ static void forced_oscillators_graze_where_their_closed_form_says(void **state) 
     forced_oscillator_init(&o);
     o.lattice.on_site.damping = x->damping;
     ric_family_problem problem = forced_oscillator_problem(&o, 0, 1, w);
-    const ric_family_options options = grazed_within(0.5, 60, 5);
-    grazed at = grazed_from(&problem, &options, 0.5, rest, rest + 1, NULL, period);
+    const ric_family_options options = grazing_family_options(0.5, 60, 5);
+    grazing_family at = grazing_family_from(&problem, &options, 0.5, rest, rest + 1, NULL, period);
     double c[COEFFICIENTS];
-    grazed_find(&at);
+    grazing_family_find(&at);
     const ric_grazing g = at.grazing;
-    ric_grazing_map map = grazed_map(&at, NULL);
+    ric_grazing_map map = grazing_family_map(&at, NULL);
     const ric_grazing_criterion verdict = judge(&map, c);
     assert_close(g.parameter / amplitude, 1, 3e-14);
     if (!isnan(x->amplitude))
@@ -58,13 +58,13 @@ static void forced_oscillators_graze_where_their_closed_form_says(void **state) 
     if (!isnan(x->lambda))
       assert_close(verdict.dominant.re, x->lambda, x->lambda == 0.67032415 ? 1e-8 : 1e-3);
     ric_grazing_map_clear(&map);
-    grazed_clear(&at);
+    grazing_family_clear(&at);
     forced_oscillator_clear(&o);
   }
 }
 
 /* c_i from any section. */
-static void compare_sections(grazed *g, size_t state, double tolerance) {
+static void compare_sections(grazing_family *g, size_t state, double tolerance) {
   double first[COEFFICIENTS], c[COEFFICIENTS];
   double *normal = calloc(state, sizeof *normal);
   unsigned long long seed = 11;
@@ -76,7 +76,7 @@ static void compare_sections(grazed *g, size_t state, double tolerance) {
       seed = seed * 6364136223846793005ULL + 1442695040888963407ULL;
       normal[i] = (double)(seed >> 11) / 9007199254740992.0 - 0.5;
     }
-    ric_grazing_map map = grazed_map(g, &plane);
+    ric_grazing_map map = grazing_family_map(g, &plane);
     judge(&map, k == 0 ? first : c);
     for (int i = 0; k > 0 && i < COEFFICIENTS; i++)
       assert_close(c[i], first[i], tolerance * (1 + fabs(first[0])));
@@ -90,12 +90,12 @@ static void coefficients_do_not_depend_on_the_section(void **state) {
   forced_oscillator o;
   forced_oscillator_init(&o);
   ric_family_problem problem = forced_oscillator_problem(&o, 0, 1, 1.7);
-  ric_family_options options = grazed_within(0.1, 60, 5);
+  ric_family_options options = grazing_family_options(0.1, 60, 5);
   const double rest[2] = {0};
-  grazed at = grazed_from(&problem, &options, 0.1, rest, rest + 1, NULL, two_pi / 1.7);
-  grazed_find(&at);
+  grazing_family at = grazing_family_from(&problem, &options, 0.1, rest, rest + 1, NULL, two_pi / 1.7);
+  grazing_family_find(&at);
   compare_sections(&at, 3, 1e-12);
-  grazed_clear(&at);
+  grazing_family_clear(&at);
   forced_oscillator_clear(&o);
 }
 
@@ -135,15 +135,15 @@ static void signs_change_along_a_curve_where_the_closed_form_says(void **state) 
   forced_oscillator o;
   forced_oscillator_init(&o);
   ric_family_problem problem = forced_oscillator_problem(&o, 0, 1, 1.33);
-  ric_family_options options = grazed_within(0.01, 60, 5);
+  ric_family_options options = grazing_family_options(0.01, 60, 5);
   const double rest[2] = {0};
-  grazed at = grazed_from(&problem, &options, 0.01, rest, rest + 1, NULL, two_pi / 1.33);
+  grazing_family at = grazing_family_from(&problem, &options, 0.01, rest, rest + 1, NULL, two_pi / 1.33);
   ric_curve_options curve = ric_curve_options_default();
   ric_curve_run run;
   ric_error error;
   seen_curve seen = {0};
   size_t expected = 0;
-  grazed_find(&at);
+  grazing_family_find(&at);
   curve.p_high = 3.3;
   curve.step = curve.step_most = 0.05;
   curve.newton_tol = 1e-11;
@@ -159,7 +159,7 @@ static void signs_change_along_a_curve_where_the_closed_form_says(void **state) 
   assert_int_equal(seen.zeros, expected);
   assert_int_equal(run.missed, 0);
   assert_true(seen.worst < 1e-10 && seen.phase_worst < 1e-8);
-  grazed_clear(&at);
+  grazing_family_clear(&at);
   forced_oscillator_clear(&o);
 }
 
@@ -183,17 +183,17 @@ static void a_limit_cycle_grazes_at_its_amplitude(void **state) {
       .set = move_wall,
       .user = &wall_at,
       .parameters = 1};
-  ric_family_options options = grazed_within(1, 3, 0.3);
+  ric_family_options options = grazing_family_options(1, 3, 0.3);
   options.curve.direction = -1;
   const double x[2] = {2, 0};
-  grazed at = grazed_from(&problem, &options, 3, x, NULL, NULL, 6.4);
+  grazing_family at = grazing_family_from(&problem, &options, 3, x, NULL, NULL, 6.4);
   double amplitude = 0;
   static double samples[SAMPLES][2];
   assert_int_equal(ric_shooting_states(ric_family_shooting(at.family), at.z, 0, SAMPLES, samples[0], NULL, NULL),
                    RIC_OK);
   for (size_t k = 0; k < SAMPLES; k++)
     amplitude = fmax(amplitude, samples[k][0]);
-  grazed_find(&at);
+  grazing_family_find(&at);
   assert_close(at.grazing.parameter, amplitude, 1e-6); /* of the order of the square of the distance of samples */
   assert_close(at.grazing.slope, 1, 1e-9);
   assert_close(at.grazing.x[0], at.grazing.parameter, 1e-12);
@@ -201,7 +201,7 @@ static void a_limit_cycle_grazes_at_its_amplitude(void **state) {
   assert_close(at.grazing.local.acceleration, at.grazing.parameter, 1e-8); /* h'' = x at the turning point */
   assert_close(at.grazing.local.xi[1], -1.8, 1e-8);
   compare_sections(&at, 2, 1e-8);
-  grazed_clear(&at);
+  grazing_family_clear(&at);
   ric_system_destroy(&problem.system);
 }
 
@@ -239,18 +239,18 @@ static void a_motion_that_hits_one_wall_grazes_another(void **state) {
       .user = &m,
       .parameters = 1};
   assert_int_equal(ric_system_create_lattice(&m.lattice, m.walls, 2, &problem.system, NULL), RIC_OK);
-  ric_family_options options = grazed_within(0.01, 5, 0.2);
+  ric_family_options options = grazing_family_options(0.01, 5, 0.2);
   options.curve.direction = -1;
   const double q[2] = {0.1, 1}, u[2] = {0.1, -0.5}, time = 0.5;
-  grazed at = grazed_from(&problem, &options, 5, q, u, &time, two_pi);
-  grazed_find(&at);
+  grazing_family at = grazing_family_from(&problem, &options, 5, q, u, &time, two_pi);
+  grazing_family_find(&at);
   assert_int_equal(at.grazing.local.obstacle, 0);
   assert_close(at.grazing.slope, 1, 1e-9);
   assert_close(at.grazing.x[0], at.grazing.parameter, 1e-13);
   assert_close(at.grazing.x[2], 0, 1e-12);
   assert_close(at.grazing.local.xi[2], -1.5, 1e-14);
   compare_sections(&at, 5, 1e-9);
-  grazed_clear(&at);
+  grazing_family_clear(&at);
   ric_system_destroy(&problem.system);
 }
 

@@ -2,7 +2,7 @@
 #include "support.h"
 
 #include "witness/grazing_maps.h"
-#include "judged_map.h"
+#include "criterion_map.h"
 #include "scenario/random_source.h"
 
 static const double pi = 3.14159265358979323846;
@@ -120,7 +120,7 @@ static void overdamped_oscillators_pass(void **state) {
     ric_grazing_regime regime;
   } cases[] = {{6, 0.670324, RIC_REGIME_CHAOS}, {4, 0.549, RIC_REGIME_WINDOWS}, {1.5, 0.202, RIC_REGIME_OVERLAP}};
   for (size_t k = 0; k < 3; k++) {
-    ric_grazing_criterion c = find_once(oscillator(3, cases[k].w, 0.8));
+    ric_grazing_criterion c = find_criterion_once(oscillator(3, cases[k].w, 0.8));
     double rate = (3 - sqrt(5)) / 2, T = 2 * pi / cases[k].w;
     assert_int_equal(c.verdict, RIC_GRAZING_CONTINUOUS);
     assert_int_equal(c.regime, cases[k].regime);
@@ -167,10 +167,10 @@ static void coordinates_do_not_matter(void **state) {
     size_t n = 1 + random_below(&source, most_size);
     ric_grazing_map map = any_map(&source, n, trial % 2 ? 0 : -0.4);
     if (brute(&map).closest > 1e-4) {
-      ric_grazing_criterion before = find(&map);
+      ric_grazing_criterion before = find_criterion(&map);
       random_coordinates(&source, trial % 4 < 2 ? 0 : 6, n, S);
       change_coordinates(&map, S);
-      ric_grazing_criterion after = find(&map);
+      ric_grazing_criterion after = find_criterion(&map);
       assert_same(&before, &after);
     }
     ric_grazing_map_clear(&map);
@@ -211,17 +211,17 @@ static void sizes_of_numbers_do_not_matter(void **state) {
   (void)state;
   ric_grazing_map map =
       diagonal_map(3, (double[]){0.5, 0.4, -0.3}, (double[]){1, 1e9, 1e-12}, (double[]){1, 1e-9, 1e12});
-  ric_grazing_criterion c = find(&map);
+  ric_grazing_criterion c = find_criterion(&map);
   assert_int_equal(c.verdict, RIC_GRAZING_CONTINUOUS);
   assert_true(c.settled <= 16); /* as with ones: 0.8^i sinks below 0.9 / 2 */
   for (size_t k = 0; k < 3; k++) {
     map.eta[k] *= 1e-200;
     map.xi[k] *= 1e-90;
   }
-  c = find_once(map);
+  c = find_criterion_once(map);
   assert_int_equal(c.verdict, RIC_GRAZING_CONTINUOUS);
   assert_close(c.alpha / 1e-290, 1, 1e-10);
-  c = find_once(diagonal_map(2, (double[]){1e-300, 1e-301}, (double[]){1, 1}, (double[]){1, 1}));
+  c = find_criterion_once(diagonal_map(2, (double[]){1e-300, 1e-301}, (double[]){1, 1}, (double[]){1, 1}));
   assert_int_equal(c.verdict, RIC_GRAZING_CONTINUOUS);
   assert_int_equal(c.regime, RIC_REGIME_OVERLAP);
 }
@@ -236,7 +236,7 @@ static void verdicts_agree_with_brute_force(void **state) {
     size_t n = 1 + trial % most_size;
     ric_grazing_map map = any_map(&source, n, random_uniform(&source, -0.8, 0.1));
     brute_signs signs = brute(&map);
-    ric_grazing_criterion c = find(&map);
+    ric_grazing_criterion c = find_criterion(&map);
     if (signs.closest > 1e-7) {
       seen[c.verdict]++;
       assert_int_equal(c.first_negative, signs.first_negative);
@@ -252,7 +252,7 @@ static void positive_maps_are_continuous(void **state) {
   (void)state;
   random_source source = {14};
   for (size_t trial = 0; trial < 200; trial++) {
-    ric_grazing_criterion c = find_once(any_map(&source, 1 + trial % most_size, 1e-3));
+    ric_grazing_criterion c = find_criterion_once(any_map(&source, 1 + trial % most_size, 1e-3));
     assert_int_equal(c.verdict, RIC_GRAZING_CONTINUOUS);
     assert_true(c.alpha > 0 && c.dominant.re > c.second);
   }
@@ -267,7 +267,7 @@ static void settled_index_is_honest(void **state) {
     double l = cases[k][0], m = cases[k][1], b = cases[k][2];
     ric_grazing_map map = diagonal_map(2, (double[]){l, m}, (double[]){1, 1}, (double[]){1, b});
     change_coordinates(&map, (double[]){1, 2, -0.5, 3});
-    ric_grazing_criterion c = find_once(map);
+    ric_grazing_criterion c = find_criterion_once(map);
     assert_int_equal(c.verdict, RIC_GRAZING_CONTINUOUS);
     assert_close(c.alpha, 1, 1e-9);
     assert_true(fabs(b) * pow(fabs(m) / l, (double)c.settled) < 0.9000001);
@@ -296,15 +296,15 @@ static void defective_rest_is_proved(void **state) {
 static void late_negative_coefficients_are_found(void **state) {
   (void)state;
   const double weights[] = {1, 1};
-  ric_grazing_criterion c = find_once(diagonal_map(2, (double[]){0.8, 0.9}, weights, (double[]){1, -1e-3}));
+  ric_grazing_criterion c = find_criterion_once(diagonal_map(2, (double[]){0.8, 0.9}, weights, (double[]){1, -1e-3}));
   assert_int_equal(c.verdict, RIC_GRAZING_DISCONTINUOUS);
   assert_int_equal(c.first_negative, 59); /* (9/8)^i > 1000 */
   assert_close(c.alpha, -1e-3, 1e-12);
   double re = 0.9 * cos(0.01), im = 0.9 * sin(0.01);
-  c = find_once(map_of(2, (double[]){re, -im, im, re}, (double[]){1, 0}, (double[]){1, 0}));
+  c = find_criterion_once(map_of(2, (double[]){re, -im, im, re}, (double[]){1, 0}, (double[]){1, 0}));
   assert_int_equal(c.verdict, RIC_GRAZING_DISCONTINUOUS);
   assert_int_equal(c.first_negative, 158); /* 0.01 i > pi / 2 */
-  c = find_once(diagonal_map(2, (double[]){0.5, -0.6}, weights, (double[]){1, 1e-3}));
+  c = find_criterion_once(diagonal_map(2, (double[]){0.5, -0.6}, weights, (double[]){1, 1e-3}));
   assert_int_equal(c.verdict, RIC_GRAZING_DISCONTINUOUS);
   assert_int_equal(c.first_negative, 39); /* odd, 1.2^i > 1000 */
   assert_close(c.dominant.re, -0.6, 1e-15);

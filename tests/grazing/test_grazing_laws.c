@@ -2,7 +2,7 @@
  * the second one along, by f times its change of speed, turns xi, and with it the signs of c_i = eta L^i xi. */
 #include "support.h"
 
-#include "witness/grazed.h"
+#include "witness/grazing_family.h"
 
 enum { COEFFICIENTS = 12, TRANSIENT = 100, KEPT = 40 };
 
@@ -65,16 +65,16 @@ static judged judge(dragged *d) {
                                 .set = set,
                                 .user = d,
                                 .parameters = 1};
-  const ric_family_options options = grazed_within(0.5, 100, 5);
-  grazed g = grazed_from(&problem, &options, 0.5, rest, NULL, NULL, two_pi / frequency);
-  grazed_find(&g);
-  ric_grazing_map map = grazed_map(&g, NULL);
+  const ric_family_options options = grazing_family_options(0.5, 100, 5);
+  grazing_family g = grazing_family_from(&problem, &options, 0.5, rest, NULL, NULL, two_pi / frequency);
+  grazing_family_find(&g);
+  ric_grazing_map map = grazing_family_map(&g, NULL);
   assert_int_equal(ric_grazing_criterion_find(&map, NULL, &j.criterion, j.c, COEFFICIENTS, NULL, NULL), RIC_OK);
   assert_close(g.grazing.local.xi[3], -d->drag * (1 + restitution), 1e-7);
   j.amplitude = g.grazing.parameter;
   memcpy(j.smooth, g.grazing.z, sizeof j.smooth);
   ric_grazing_map_clear(&map);
-  grazed_clear(&g);
+  grazing_family_clear(&g);
   ric_system_destroy(&problem.system);
   return j;
 }

@@ -1,7 +1,7 @@
 /* Grazing points that the theory does not cover, and requests that make no sense: each refused by name. */
 #include "support.h"
 
-#include "witness/grazed.h"
+#include "witness/grazing_family.h"
 
 static const double two_pi = 6.283185307179586;
 
@@ -53,7 +53,7 @@ static ric_status set_wall(ric_system *system, const double *p, double *given, v
 
 typedef struct sought {
   ric_system *system;
-  grazed at;
+  grazing_family at;
 } sought;
 
 /* The motion sin t times the force, from the first parameter on. */
@@ -68,15 +68,15 @@ static sought seek(shaped *s, size_t obstacles, double from, double to,
                                       .set = set,
                                       .user = s,
                                       .parameters = 1};
-  ric_family_options options = grazed_within(fmin(from, to), fmax(from, to), 0.2);
+  ric_family_options options = grazing_family_options(fmin(from, to), fmax(from, to), 0.2);
   options.curve.direction = to - from;
   const double q = 0, u = force_now;
-  k.at = grazed_from(&problem, &options, from, &q, &u, NULL, two_pi);
+  k.at = grazing_family_from(&problem, &options, from, &q, &u, NULL, two_pi);
   return k;
 }
 
 static void sought_clear(sought *k) {
-  grazed_clear(&k->at);
+  grazing_family_clear(&k->at);
   ric_system_destroy(&k->system);
 }
 
@@ -154,7 +154,7 @@ static void requests_out_of_range_are_refused(void **state) {
     assert_invalid(ric_grazing_find(k.at.family, k.at.z, 0.5, &bad[i], g, &error), &error, names[i]);
   assert_invalid(ric_grazing_take(k.at.family, k.at.z, 1, 3, 1, NULL, g, &error), &error, "obstacle = 3");
   assert_int_equal(ric_grazing_take(k.at.family, k.at.z, 0.5, 0, 1.5, NULL, g, &error), RIC_ENUMERIC);
-  assert_non_null(strstr(error.message, "it is not touched"));
+  assert_non_null(strstr(error.message, "no grazing point"));
   assert_int_equal(ric_grazing_find(k.at.family, k.at.z, 0.5, NULL, g, &error), RIC_OK);
   assert_int_equal(ric_grazing_map_init(&map, 2, NULL), RIC_OK);
   /* The speed is (cos t, -sin t, 1): a section that holds it. */
@@ -286,16 +286,16 @@ static void a_search_leaves_out_motions_that_pass_an_obstacle(void **state) {
       .set = set_coupled_force,
       .user = &c,
       .parameters = 1};
-  const ric_family_options options = grazed_within(1, 10, 0.2);
+  const ric_family_options options = grazing_family_options(1, 10, 0.2);
   const double q[2] = {0.5, 0}, u[2] = {-0.5, 0}, time = 1.5, period = two_pi / 1.3;
-  sought by_search = {.at = grazed_from(&problem, &options, 1, q, u, &time, period)};
+  sought by_search = {.at = grazing_family_from(&problem, &options, 1, q, u, &time, period)};
   assert_int_equal(search(&by_search).outcome, RIC_GRAZING_SEARCH_NONE);
-  sought by_find = {.at = grazed_from(&problem, &options, 1, q, u, &time, period)};
+  sought by_find = {.at = grazing_family_from(&problem, &options, 1, q, u, &time, period)};
   /* at such a point, which the family does come to, nothing can be started */
   assert_int_equal(ric_grazing_find(by_find.at.family, by_find.at.z, 1, NULL, &by_find.at.grazing, &error), RIC_EINVAL);
   assert_non_null(strstr(error.message, "the gap of obstacle 0"));
-  grazed_clear(&by_search.at);
-  grazed_clear(&by_find.at);
+  grazing_family_clear(&by_search.at);
+  grazing_family_clear(&by_find.at);
   ric_system_destroy(&system);
 }
 

@@ -5,7 +5,7 @@
 #include "support.h"
 
 #include "witness/double_pendulum.h"
-#include "witness/grazed.h"
+#include "witness/grazing_family.h"
 
 enum { MASSES = 5, MOST = 2 * MASSES };
 
@@ -96,7 +96,7 @@ static void make_pendulum(driven *d) {
 
 typedef struct grazing_case {
   driven *d;
-  grazed at;
+  grazing_family at;
   ric_grazing_map map;
 } grazing_case;
 
@@ -109,16 +109,16 @@ static grazing_case graze(driven *d) {
                                       .set = set_force,
                                       .user = d,
                                       .parameters = 1};
-  const ric_family_options options = grazed_within(d->low, d->high, 0.2);
-  k.at = grazed_from(&problem, &options, d->low, rest, rest + n, NULL, two_pi / d->frequency);
-  grazed_find(&k.at);
-  k.map = grazed_map(&k.at, NULL);
+  const ric_family_options options = grazing_family_options(d->low, d->high, 0.2);
+  k.at = grazing_family_from(&problem, &options, d->low, rest, rest + n, NULL, two_pi / d->frequency);
+  grazing_family_find(&k.at);
+  k.map = grazing_family_map(&k.at, NULL);
   return k;
 }
 
 static void clear(grazing_case *k) {
   ric_grazing_map_clear(&k->map);
-  grazed_clear(&k->at);
+  grazing_family_clear(&k->at);
   ric_system_destroy(&k->d->system);
 }
 

@@ -5,7 +5,7 @@
  * Where a c_i on the way is so small that this is below the y = sqrt(d) of the mu that are run, runs cannot tell. */
 #include "support.h"
 
-#include "witness/grazed.h"
+#include "witness/grazing_family.h"
 #include "scenario/random_source.h"
 
 enum { SYSTEMS = 200, N = 2, TRANSIENT = 300, KEPT = 200, COEFFICIENTS = 64 };
@@ -72,7 +72,7 @@ static double distance(driven *d, const ric_grazing *g, double beyond) {
 /* A random system at grazing: the smooth motion is proportional to the force. */
 typedef struct tried {
   driven d;
-  grazed at;
+  grazing_family at;
   ric_grazing_criterion criterion;
   double stretch, c[COEFFICIENTS];
 } tried;
@@ -85,17 +85,17 @@ static void try(tried *k, random_source *source) {
                                       .set = set,
                                       .user = &k->d,
                                       .parameters = 1};
-  const ric_family_options options = grazed_within(1e-3, 1e4, 100);
-  k->at = grazed_from(&problem, &options, 1e-3, rest, rest + N, NULL, two_pi / k->d.frequency);
-  grazed_find(&k->at);
-  ric_grazing_map map = grazed_map(&k->at, NULL);
+  const ric_family_options options = grazing_family_options(1e-3, 1e4, 100);
+  k->at = grazing_family_from(&problem, &options, 1e-3, rest, rest + N, NULL, two_pi / k->d.frequency);
+  grazing_family_find(&k->at);
+  ric_grazing_map map = grazing_family_map(&k->at, NULL);
   assert_int_equal(ric_grazing_criterion_find(&map, NULL, &k->criterion, k->c, COEFFICIENTS, NULL, NULL), RIC_OK);
   k->stretch = map.stretch;
   ric_grazing_map_clear(&map);
 }
 
 static void clear(tried *k) {
-  grazed_clear(&k->at);
+  grazing_family_clear(&k->at);
   ric_system_destroy(&k->d.system);
 }
 

@@ -2,7 +2,7 @@
  * contacts. */
 #include "support.h"
 
-#include "witness/recorded.h"
+#include "witness/recorded_run.h"
 #include "scenario/random_source.h"
 
 enum { N = 8 };
@@ -33,14 +33,14 @@ static witness witness_create(uint64_t seed, double stiffness) {
   return w;
 }
 
-static recorded run(witness *w, ric_flow_method method, double tolerance, double end) {
+static recorded_run run(witness *w, ric_flow_method method, double tolerance, double end) {
   w->lattice.force_cos = w->force;
   ric_trajectory_options options = ric_trajectory_options_default();
   options.flow.method = method;
   options.flow.tolerance = tolerance;
   options.chatter_tol = 1e-3;
   ric_system *system = lattice_system(&w->lattice, w->obstacles, w->count);
-  recorded r = record(system, &options, w->q, w->u, end);
+  recorded_run r = record_run(system, &options, w->q, w->u, end);
   ric_system_destroy(&system);
   return r;
 }
@@ -49,7 +49,7 @@ static size_t agree(double stiffness, double end, double bound_per_tolerance) {
   size_t impacts = 0;
   for (uint64_t seed = 0; seed < 12; seed++) {
     witness w = witness_create(seed, stiffness);
-    recorded taylor = run(&w, RIC_FLOW_TAYLOR, 0, end), cvodes = run(&w, RIC_FLOW_CVODES, 1e-12, end);
+    recorded_run taylor = run(&w, RIC_FLOW_TAYLOR, 0, end), cvodes = run(&w, RIC_FLOW_CVODES, 1e-12, end);
     assert_int_equal(taylor.run.outcome, RIC_RUN_COMPLETED);
     assert_int_equal(cvodes.run.outcome, RIC_RUN_COMPLETED);
     assert_int_equal(taylor.count, cvodes.count);
@@ -57,12 +57,12 @@ static size_t agree(double stiffness, double end, double bound_per_tolerance) {
       assert_int_equal(taylor.events[i].kind, cvodes.events[i].kind);
       assert_int_equal(taylor.events[i].obstacle, cvodes.events[i].obstacle);
     }
-    double difference = recorded_difference(&taylor, &cvodes);
+    double difference = recorded_runs_difference(&taylor, &cvodes);
     if (!(difference <= bound_per_tolerance * 1e-12))
       fail_msg("seed %d: the flows differ by %g after %zu events", (int)seed, difference, taylor.count);
     impacts += taylor.count;
-    recorded_clear(&taylor);
-    recorded_clear(&cvodes);
+    recorded_run_clear(&taylor);
+    recorded_run_clear(&cvodes);
   }
   print_message("[ %zu events ]\n", impacts);
   return impacts;
@@ -89,11 +89,11 @@ static void hertz_contacts_touched_at_rest_go_on(void **state) {
     floor.stiffness = 100;
     options.flow.method = k < 3 ? RIC_FLOW_TAYLOR : RIC_FLOW_CVODES;
     ric_system *system = lattice_system(&mass, &floor, 1);
-    recorded r = record(system, &options, (double[]){place}, (double[]){0}, 10);
+    recorded_run r = record_run(system, &options, (double[]){place}, (double[]){0}, 10);
     assert_int_equal(r.run.outcome, RIC_RUN_COMPLETED);
     assert_true(r.count < 30);
     assert_close(r.run.energy_end, r.run.energy_start, 1e-9);
-    recorded_clear(&r);
+    recorded_run_clear(&r);
     ric_system_destroy(&system);
   }
 }
@@ -107,16 +107,16 @@ static void flows_agree_on_coupled_masses(void **state) {
     sides[i].restitution = 0.9;
   ric_system *system = coupled_masses(sides, 4);
   ric_trajectory_options options = ric_trajectory_options_default();
-  recorded taylor = record(system, &options, (double[]){0.3, 0.1, -0.2}, (double[]){0, 0.4, 0.5}, 20);
+  recorded_run taylor = record_run(system, &options, (double[]){0.3, 0.1, -0.2}, (double[]){0, 0.4, 0.5}, 20);
   options.flow.method = RIC_FLOW_CVODES;
-  recorded cvodes = record(system, &options, (double[]){0.3, 0.1, -0.2}, (double[]){0, 0.4, 0.5}, 20);
+  recorded_run cvodes = record_run(system, &options, (double[]){0.3, 0.1, -0.2}, (double[]){0, 0.4, 0.5}, 20);
   assert_int_equal(taylor.count, cvodes.count);
-  assert_true(recorded_impacts(&taylor) >= 8);
+  assert_true(recorded_run_impacts(&taylor) >= 8);
   for (size_t i = 0; i < taylor.count; i++)
     assert_close(taylor.events[i].time, cvodes.events[i].time, 1e-7);
-  assert_true(recorded_difference(&taylor, &cvodes) <= 1e-6);
-  recorded_clear(&taylor);
-  recorded_clear(&cvodes);
+  assert_true(recorded_runs_difference(&taylor, &cvodes) <= 1e-6);
+  recorded_run_clear(&taylor);
+  recorded_run_clear(&cvodes);
   ric_system_destroy(&system);
 }
 

@@ -4,7 +4,7 @@
 
 #include <stdbool.h>
 
-#include "witness/recorded.h"
+#include "witness/recorded_run.h"
 #include "scenario/random_source.h"
 
 static const double pi = 3.14159265358979323846;

@@ -1,7 +1,7 @@
 /* Gaps that move or curve: systems of users against closed forms, brute force and their own longer runs. */
 #include "support.h"
 
-#include "witness/recorded.h"
+#include "witness/recorded_run.h"
 #include "scenario/random_source.h"
 
 /* A ball under gravity 1 over a table at height a sin(w t). */
@@ -52,13 +52,13 @@ static ric_system *ball_on_table(table *a, const double *restitution) {
   return system;
 }
 
-static recorded shaken_ball(double tolerance, double events_per_time) {
+static recorded_run shaken_ball(double tolerance, double events_per_time) {
   table a = {.amplitude = 0.12, .frequency = 3};
   ric_trajectory_options options = ric_trajectory_options_default();
   options.flow.tolerance = tolerance;
   options.events_per_time = events_per_time;
   ric_system *system = ball_on_table(&a, (double[]){0.8});
-  recorded r = record(system, &options, (double[]){0.5}, (double[]){0}, 20);
+  recorded_run r = record_run(system, &options, (double[]){0.5}, (double[]){0}, 20);
   ric_system_destroy(&system);
   return r;
 }
@@ -66,23 +66,23 @@ static recorded shaken_ball(double tolerance, double events_per_time) {
 /* The times of rests and releases do not depend on how much of the series of impacts is followed. */
 static void chatter_on_a_forced_table_agrees_with_a_run_that_follows_it_further(void **state) {
   (void)state;
-  recorded r = shaken_ball(1e-12, 1e5), witness = shaken_ball(1e-14, 4e5);
+  recorded_run r = shaken_ball(1e-12, 1e5), witness = shaken_ball(1e-14, 4e5);
   /* summed up at durations d = (1.4e-12)^(1/4), where the speed is w = d (1 - e) / 2 = 1.1e-4: errors of 1.4e-12 in the
    * gap shift landings by 1.4e-12 / w each, and the series of them by 1 / (1 - e) as much */
-  assert_true(recorded_rests_agree(&r, &witness, 6e-8) >= 8);
-  recorded_clear(&r);
-  recorded_clear(&witness);
+  assert_true(recorded_runs_stick_alike(&r, &witness, 6e-8) >= 8);
+  recorded_run_clear(&r);
+  recorded_run_clear(&witness);
 }
 
 /* The ball leaves where the table falls away faster than gravity: a w^2 sin(w t) = 1. */
 static void ball_leaves_the_table_at_the_closed_form(void **state) {
   (void)state;
-  recorded r = shaken_ball(1e-12, 1e5);
+  recorded_run r = shaken_ball(1e-12, 1e5);
   for (size_t i = 0; i < r.count; i++)
     if (r.events[i].kind == RIC_EVENT_RELEASE)
       assert_close(sin(3 * r.events[i].time), 1 / (0.12 * 9), 1e-7);
   assert_true(r.run.events[RIC_EVENT_RELEASE] >= 4);
-  recorded_clear(&r);
+  recorded_run_clear(&r);
 }
 
 /* A table that moves does work: what impacts take, and what they give, is in the ledger. */
@@ -92,11 +92,11 @@ static void ledger_counts_the_work_of_a_moving_table(void **state) {
     table a = {.amplitude = 0.3, .frequency = 2};
     double e = 0.5 * k;
     ric_system *system = ball_on_table(&a, &e);
-    recorded r = record(system, NULL, (double[]){1}, (double[]){0}, 4);
-    assert_true(recorded_impacts(&r) >= 1);
+    recorded_run r = record_run(system, NULL, (double[]){1}, (double[]){0}, 4);
+    assert_true(recorded_run_impacts(&r) >= 1);
     if (r.run.events[RIC_EVENT_REST] == 0)
       assert_close(r.run.energy_start - r.run.impact_loss, r.run.energy_end, 1e-10);
-    recorded_clear(&r);
+    recorded_run_clear(&r);
     ric_system_destroy(&system);
   }
 }
@@ -125,10 +125,10 @@ static void fast_wall_is_hit_where_brute_force_finds_it(void **state) {
         first = t;
     ric_system *system = NULL;
     assert_int_equal(ric_system_create_mechanical(&model, &system, NULL), RIC_OK);
-    recorded r = record(system, NULL, (double[]){0}, (double[]){speed}, first + 0.01);
+    recorded_run r = record_run(system, NULL, (double[]){0}, (double[]){speed}, first + 0.01);
     assert_true(r.count >= 1);
     assert_close(r.events[0].time, first, 2e-4 / frequency);
-    recorded_clear(&r);
+    recorded_run_clear(&r);
     ric_system_destroy(&system);
   }
 }
@@ -154,11 +154,11 @@ static void grazing_of_a_disc_is_seen_above_the_floor(void **state) {
   assert_int_equal(ric_system_create_mechanical(&model, &system, NULL), RIC_OK);
   for (int i = 0; i < 2000; i++) {
     double depth = pow(10, random_uniform(&source, -9, -2)), from = random_uniform(&source, -3, -1);
-    recorded r = record(system, NULL, (double[]){from, 1 - depth}, (double[]){1, 0}, 3);
+    recorded_run r = record_run(system, NULL, (double[]){from, 1 - depth}, (double[]){1, 0}, 3);
     /* s steps at tolerance 1e-12: the floor of the flow, and that of the interpolation, as many tolerances */
     if (depth > 4e-12 * (double)(r.run.flow.steps + 2) * 5)
-      assert_true(recorded_impacts(&r) >= 1);
-    recorded_clear(&r);
+      assert_true(recorded_run_impacts(&r) >= 1);
+    recorded_run_clear(&r);
   }
   ric_system_destroy(&system);
 }

@@ -1,13 +1,13 @@
 /* Persistent contacts: when they begin, what they carry, when they open. */
 #include "support.h"
 
-#include "witness/recorded.h"
+#include "witness/recorded_run.h"
 
 static const double pi = 3.14159265358979323846;
 
 /* A mass that rests on a floor at 0.5, pressed by its spring with 0.5, under the force a sin(w t): it lifts off when
  * a sin(w t) = 0.5. */
-static recorded lift_off(double amplitude, double frequency, ric_flow_method method, double end) {
+static recorded_run lift_off(double amplitude, double frequency, ric_flow_method method, double end) {
   ric_lattice mass = ric_lattice_default(1, RIC_ENDS_FREE);
   ric_obstacle floor = ric_obstacle_floor(0, 0.5);
   ric_trajectory_options options = ric_trajectory_options_default();
@@ -16,12 +16,12 @@ static recorded lift_off(double amplitude, double frequency, ric_flow_method met
   floor.restitution = 0.3;
   options.flow.method = method;
   ric_system *system = lattice_system(&mass, &floor, 1);
-  recorded r = record(system, &options, (double[]){0.5}, (double[]){0}, end);
+  recorded_run r = record_run(system, &options, (double[]){0.5}, (double[]){0}, end);
   ric_system_destroy(&system);
   return r;
 }
 
-static void expect_lift_off(const recorded *r, double time, double tolerance) {
+static void expect_lift_off(const recorded_run *r, double time, double tolerance) {
   assert_int_equal(r->count, 2);
   assert_int_equal(r->events[0].kind, RIC_EVENT_REST);
   assert_true(r->events[0].time == 0);
@@ -35,9 +35,9 @@ static void release_time_under_harmonic_force_is_the_closed_form(void **state) {
   for (int k = 0; k < 16; k++) {
     double amplitude = 0.55 + 0.3 * (k % 8), frequency = 0.3 * pow(1.4, k), lift = asin(0.5 / amplitude) / frequency;
     for (int method = RIC_FLOW_TAYLOR; method <= RIC_FLOW_CVODES; method++) {
-      recorded r = lift_off(amplitude, frequency, (ric_flow_method)method, lift + 0.1 / frequency);
+      recorded_run r = lift_off(amplitude, frequency, (ric_flow_method)method, lift + 0.1 / frequency);
       expect_lift_off(&r, lift, (method == RIC_FLOW_TAYLOR ? 1e-14 : 1e-11) / frequency);
-      recorded_clear(&r);
+      recorded_run_clear(&r);
     }
   }
 }
@@ -63,9 +63,9 @@ static void release_time_of_a_user_system_is_the_closed_form(void **state) {
     double lift = asin(0.5 / 0.7) / frequency;
     ric_system *system = NULL;
     assert_int_equal(ric_system_create_mechanical(&model, &system, NULL), RIC_OK);
-    recorded r = record(system, NULL, (double[]){0.5}, (double[]){0}, lift + 0.1 / frequency);
+    recorded_run r = record_run(system, NULL, (double[]){0.5}, (double[]){0}, lift + 0.1 / frequency);
     expect_lift_off(&r, lift, 1e-8);
-    recorded_clear(&r);
+    recorded_run_clear(&r);
     ric_system_destroy(&system);
   }
 }
@@ -81,12 +81,12 @@ static void released_mass_moves_freely(void **state) {
   mass.frequency = 1;
   mass.force_sin = &amplitude;
   ric_system *system = lattice_system(&mass, &floor, 1);
-  recorded r = record(system, NULL, (double[]){0.125}, (double[]){0}, lift + after);
+  recorded_run r = record_run(system, NULL, (double[]){0.125}, (double[]){0}, lift + after);
   /* q = p sin t + a cos 2(t - lift) + b sin 2(t - lift), p = amplitude / 3 */
   double p = amplitude / 3, a = 0.125 - p * sin(lift), b = -p * cos(lift) / 2;
   assert_close(r.q[0], p * sin(lift + after) + a * cos(2 * after) + b * sin(2 * after), 1e-14);
   assert_close(r.u[0], p * cos(lift + after) - 2 * a * sin(2 * after) + 2 * b * cos(2 * after), 1e-14);
-  recorded_clear(&r);
+  recorded_run_clear(&r);
   ric_system_destroy(&system);
 }
 
@@ -111,7 +111,7 @@ static void chain_with_losses_comes_to_rest(void **state) {
     q[i] = 0.2 + 0.05 * (double)i;
     u[i] = i % 2 ? -0.1 : 0.3;
   }
-  recorded r = record(system, NULL, q, u, 60);
+  recorded_run r = record_run(system, NULL, q, u, 60);
   assert_int_equal(r.run.outcome, RIC_RUN_COMPLETED);
   for (size_t i = 0; i < CHAIN; i++)
     assert_true(r.q[i] == 0.1 && r.u[i] == 0);
@@ -121,7 +121,7 @@ static void chain_with_losses_comes_to_rest(void **state) {
   assert_close(r.run.energy_end, ric_system_energy(system, 0, at_rest, zero), 1e-16);
   assert_close(r.run.energy_start - r.run.impact_loss, r.run.energy_end, 1e-14);
   assert_int_equal(r.run.events[RIC_EVENT_REST], CHAIN + r.run.events[RIC_EVENT_RELEASE]);
-  recorded_clear(&r);
+  recorded_run_clear(&r);
   ric_system_destroy(&system);
 }
 
@@ -132,13 +132,13 @@ static void plastic_impacts_stick_at_once(void **state) {
   double q[CHAIN], u[CHAIN] = {0};
   for (size_t i = 0; i < CHAIN; i++)
     q[i] = 0.2 + 0.1 * (double)(i % 3);
-  recorded r = record(system, NULL, q, u, 40);
+  recorded_run r = record_run(system, NULL, q, u, 40);
   for (size_t i = 0; i + 1 < r.count; i++)
     if (r.events[i].kind == RIC_EVENT_TRANSVERSAL)
       assert_true(r.events[i].gap_rate_end == 0);
   for (size_t i = 0; i < CHAIN; i++)
     assert_true(r.q[i] == 0.1 && r.u[i] == 0);
-  recorded_clear(&r);
+  recorded_run_clear(&r);
   ric_system_destroy(&system);
 }
 
@@ -151,11 +151,11 @@ static void neighbour_lifts_a_resting_mass(void **state) {
   ric_system *system = lattice_system(&pair, &floor, 1);
   /* The force on mass 0 is -0.2 + 0.5 (q1 - 0.2) = 0 at q1 = 0.6; q1'' = -q1 - 0.5 (q1 - 0.2) while 0 rests. */
   double omega = sqrt(1.5), centre = 0.1 / 1.5, speed = 1.2;
-  recorded r = record(system, NULL, (double[]){0.2, centre}, (double[]){0, speed}, 0.9);
-  const ric_event *release = recorded_first(&r, RIC_EVENT_RELEASE);
+  recorded_run r = record_run(system, NULL, (double[]){0.2, centre}, (double[]){0, speed}, 0.9);
+  const ric_event *release = recorded_run_first(&r, RIC_EVENT_RELEASE);
   assert_non_null(release);
   assert_close(release->time, asin((0.6 - centre) * omega / speed) / omega, 1e-14);
-  recorded_clear(&r);
+  recorded_run_clear(&r);
   ric_system_destroy(&system);
 }
 
@@ -163,11 +163,11 @@ static void neighbour_lifts_a_resting_mass(void **state) {
 static void elastic_floor_holds_a_mass_put_down_on_it(void **state) {
   (void)state;
   ric_system *ball = falling_ball(1);
-  recorded r = record(ball, NULL, (double[]){0}, (double[]){0}, 2 * pi);
+  recorded_run r = record_run(ball, NULL, (double[]){0}, (double[]){0}, 2 * pi);
   assert_int_equal(r.count, 1);
   assert_int_equal(r.events[0].kind, RIC_EVENT_REST);
   assert_true(r.q[0] == 0 && r.u[0] == 0);
-  recorded_clear(&r);
+  recorded_run_clear(&r);
   ric_system_destroy(&ball);
 }
 
@@ -185,11 +185,11 @@ static void balls_come_to_rest_at_any_height(void **state) {
       floor.restitution = 0.5;
       options.flow.method = (ric_flow_method)method;
       ric_system *system = lattice_system(&ball, &floor, 1);
-      recorded r = record(system, &options, (double[]){height + 0.5}, (double[]){0}, 20);
+      recorded_run r = record_run(system, &options, (double[]){height + 0.5}, (double[]){0}, 20);
       assert_int_equal(r.run.outcome, RIC_RUN_COMPLETED);
-      assert_true(r.count < 60 && recorded_first(&r, RIC_EVENT_REST) != NULL);
+      assert_true(r.count < 60 && recorded_run_first(&r, RIC_EVENT_REST) != NULL);
       assert_true(r.q[0] == height && r.u[0] == 0);
-      recorded_clear(&r);
+      recorded_run_clear(&r);
       ric_system_destroy(&system);
     }
 }
@@ -201,10 +201,10 @@ static void starts_a_little_below_the_floor_go_on(void **state) {
     ric_lattice mass = ric_lattice_default(1, RIC_ENDS_FREE);
     ric_obstacle floor = ric_obstacle_floor(0, k == 0 ? 0.5 : k == 1 ? -0.5 : 0);
     ric_system *system = lattice_system(&mass, &floor, 1);
-    recorded r = record(system, NULL, (double[]){floor.position - 1e-12}, (double[]){0}, 10);
+    recorded_run r = record_run(system, NULL, (double[]){floor.position - 1e-12}, (double[]){0}, 10);
     assert_int_equal(r.run.outcome, RIC_RUN_COMPLETED);
     assert_true(r.count < 10);
-    recorded_clear(&r);
+    recorded_run_clear(&r);
     ric_system_destroy(&system);
   }
 }
@@ -243,13 +243,13 @@ static void noise_of_gaps_grows_with_the_state(void **state) {
                           .gap = pair_gap};
   ric_system *system = NULL;
   assert_int_equal(ric_system_create_mechanical(&model, &system, NULL), RIC_OK);
-  recorded r = record(system, NULL, (double[]){0, 0}, (double[]){0.3, 0.3}, end);
+  recorded_run r = record_run(system, NULL, (double[]){0, 0}, (double[]){0.3, 0.3}, end);
   assert_int_equal(r.run.outcome, RIC_RUN_COMPLETED);
   assert_int_equal(r.count, 1);
   assert_int_equal(r.events[0].kind, RIC_EVENT_REST);
   assert_true(r.run.flow.starts < 100);
   assert_close(r.q[0], 0.3 * end + 0.95 / 4.6 * end * end, 1e-8 * end * end);
-  recorded_clear(&r);
+  recorded_run_clear(&r);
   ric_system_destroy(&system);
 }
 

@@ -4,7 +4,7 @@
 #include "witness/derivative.h"
 #include "witness/double_pendulum.h"
 #include "witness/random_lattice.h"
-#include "witness/recorded.h"
+#include "witness/recorded_run.h"
 
 enum { MOST = 8, SIZE = 4 * MOST * MOST };
 
@@ -17,9 +17,9 @@ typedef struct comparison {
 
 static size_t impacts_of(const ric_system *system, const ric_trajectory_options *options, const double *x, double end) {
   size_t n = ric_system_coordinates(system);
-  recorded r = record(system, options, x, x + n, end);
-  size_t impacts = recorded_impacts(&r);
-  recorded_clear(&r);
+  recorded_run r = record_run(system, options, x, x + n, end);
+  size_t impacts = recorded_run_impacts(&r);
+  recorded_run_clear(&r);
   return impacts;
 }
 

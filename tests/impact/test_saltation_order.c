@@ -5,7 +5,7 @@
 
 #include "witness/derivative.h"
 #include "witness/random_lattice.h"
-#include "witness/recorded.h"
+#include "witness/recorded_run.h"
 
 enum { MOST = 6, SIZE = 4 * MOST * MOST };
 
@@ -83,14 +83,14 @@ static pair pair_create(double damping) {
   two.link = (ric_spring){.linear = 0.7, .damping = damping};
   p.free = lattice_system(&two, NULL, 0);
   p.with_floors = lattice_system(&two, floors, 2);
-  recorded r = record(p.with_floors, NULL, p.start, p.start + 2, 0.5);
+  recorded_run r = record_run(p.with_floors, NULL, p.start, p.start + 2, 0.5);
   assert_int_equal(r.count, 2);
   p.time = r.events[0].time;
-  recorded_clear(&r);
-  r = record(p.free, NULL, p.start, p.start + 2, p.time);
+  recorded_run_clear(&r);
+  r = record_run(p.free, NULL, p.start, p.start + 2, p.time);
   memcpy(p.at_impact, r.q, 2 * sizeof(double));
   memcpy(p.at_impact + 2, r.u, 2 * sizeof(double));
-  recorded_clear(&r);
+  recorded_run_clear(&r);
   return p;
 }
 
@@ -109,10 +109,10 @@ static void multiply(const double *A, const double *B, double *C) {
 }
 
 static void reach(const pair *p, const double *x, double end, double *out) {
-  recorded r = record(p->with_floors, NULL, x, x + 2, end);
+  recorded_run r = record_run(p->with_floors, NULL, x, x + 2, end);
   memcpy(out, r.q, 2 * sizeof(double));
   memcpy(out + 2, r.u, 2 * sizeof(double));
-  recorded_clear(&r);
+  recorded_run_clear(&r);
 }
 
 /* Largest difference between D d and the difference quotient in the direction d. */

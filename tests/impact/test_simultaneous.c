@@ -1,7 +1,7 @@
 /* Impacts at one time: what does not couple commutes; what does is solved together and says so. */
 #include "support.h"
 
-#include "witness/recorded.h"
+#include "witness/recorded_run.h"
 #include "scenario/random_source.h"
 
 enum { N = 6 };
@@ -18,14 +18,14 @@ static ric_system *chain_over_floors(const double *floors) {
 }
 
 /* All particles move alike: q = cos t, and reach the floor at -0.5 together. */
-static recorded fall_together(const double *delays) {
+static recorded_run fall_together(const double *delays) {
   double floors[N], q[N], u[N] = {0};
   for (size_t i = 0; i < N; i++) {
     floors[i] = -0.5 - delays[i] * sqrt(0.75); /* reached later by the delay */
     q[i] = 1;
   }
   ric_system *system = chain_over_floors(floors);
-  recorded r = record(system, NULL, q, u, 3);
+  recorded_run r = record_run(system, NULL, q, u, 3);
   ric_system_destroy(&system);
   return r;
 }
@@ -41,7 +41,7 @@ static void shuffle(random_source *source, double *x) {
 
 static void uncoupled_impacts_at_one_time_are_simultaneous(void **state) {
   (void)state;
-  recorded r = fall_together((double[N]){0});
+  recorded_run r = fall_together((double[N]){0});
   assert_int_equal(r.count, N);
   for (size_t i = 0; i < N; i++) {
     assert_int_equal(r.events[i].kind, RIC_EVENT_SIMULTANEOUS);
@@ -49,23 +49,23 @@ static void uncoupled_impacts_at_one_time_are_simultaneous(void **state) {
     assert_true(r.events[i].time == r.events[0].time);
     assert_close(r.events[i].gap_rate, -sqrt(0.75), 1e-15);
   }
-  recorded_clear(&r);
+  recorded_run_clear(&r);
 }
 
 /* The positions differ by the delays, 1e-12 at most 6 times, and speeds by what forces do in that time. */
 static void every_order_of_split_impacts_agrees_with_the_simultaneous_ones(void **state) {
   (void)state;
   random_source source = {.state = 3};
-  recorded together = fall_together((double[N]){0});
+  recorded_run together = fall_together((double[N]){0});
   double delays[N] = {0, 1e-12, 2e-12, 3e-12, 4e-12, 5e-12};
   for (int order = 0; order < 200; order++) {
     shuffle(&source, delays);
-    recorded r = fall_together(delays);
+    recorded_run r = fall_together(delays);
     assert_int_equal(r.count, N);
-    assert_true(recorded_difference(&r, &together) <= 3e-11);
-    recorded_clear(&r);
+    assert_true(recorded_runs_difference(&r, &together) <= 3e-11);
+    recorded_run_clear(&r);
   }
-  recorded_clear(&together);
+  recorded_run_clear(&together);
 }
 
 /* Two masses that share inertia, M = [[2, 1], [1, 2]], both at their floors. */
@@ -85,8 +85,8 @@ static void coupled_impacts_solve_newtons_law_together(void **state) {
   for (int k = 0; k <= 4; k++) {
     double e = 0.25 * k;
     ric_system *system = coupled_pair(e, 2);
-    recorded r = record(system, NULL, (double[]){0, 0}, (double[]){-1, -1}, 0);
-    size_t impacts = recorded_impacts(&r);
+    recorded_run r = record_run(system, NULL, (double[]){0, 0}, (double[]){-1, -1}, 0);
+    size_t impacts = recorded_run_impacts(&r);
     assert_int_equal(impacts, 2);
     for (size_t i = 0; i < 2; i++) {
       assert_int_equal(r.events[i].kind, RIC_EVENT_COUPLED);
@@ -94,7 +94,7 @@ static void coupled_impacts_solve_newtons_law_together(void **state) {
       assert_close(r.u[i], e, 1e-15);
     }
     assert_close(r.run.impact_loss, 3 * (1 - e * e), 1e-14);
-    recorded_clear(&r);
+    recorded_run_clear(&r);
     ric_system_destroy(&system);
   }
 }
@@ -110,8 +110,8 @@ static void closed_contact_without_a_rate_shares_in_an_impact(void **state) {
   floors[0].restitution = 0.5;
   floors[1].restitution = 1;
   assert_int_equal(ric_system_create_mck(&pair, floors, 2, &system, NULL), RIC_OK);
-  recorded r = record(system, NULL, (double[]){0.3, 0.3}, (double[]){-1, 0}, 0);
-  assert_int_equal(recorded_impacts(&r), 2);
+  recorded_run r = record_run(system, NULL, (double[]){0.3, 0.3}, (double[]){-1, 0}, 0);
+  assert_int_equal(recorded_run_impacts(&r), 2);
   assert_int_equal(r.events[0].obstacle, 0);
   assert_close(r.events[0].impulse, 3, 1e-14);
   assert_int_equal(r.events[1].obstacle, 1);
@@ -119,7 +119,7 @@ static void closed_contact_without_a_rate_shares_in_an_impact(void **state) {
   assert_close(r.u[0], 0.5, 1e-15);
   assert_close(r.u[1], 0, 1e-15);
   assert_close(r.run.impact_loss, 0.75, 1e-14);
-  recorded_clear(&r);
+  recorded_run_clear(&r);
   ric_system_destroy(&system);
 }
 
@@ -128,14 +128,14 @@ static void closed_contact_without_a_rate_shares_in_an_impact(void **state) {
 static void coupled_impacts_differ_from_impacts_in_sequence(void **state) {
   (void)state;
   ric_system *first = coupled_pair(1, 1);
-  recorded r = record(first, NULL, (double[]){0, 1}, (double[]){-1, -1}, 0);
-  assert_int_equal(recorded_impacts(&r), 1);
+  recorded_run r = record_run(first, NULL, (double[]){0, 1}, (double[]){-1, -1}, 0);
+  assert_int_equal(recorded_run_impacts(&r), 1);
   assert_close(r.u[0], 1, 1e-15);
   assert_close(r.u[1], -2, 1e-15); /* driven into its floor by the impulse on 0: then p_1 = 2 * 2 / (2/3) = 6 */
   double after_both[2] = {r.u[0] - 6.0 / 3, r.u[1] + 2 * 6.0 / 3};
   assert_close(after_both[0], -1, 1e-14);
   assert_close(after_both[1], 2, 1e-14);
-  recorded_clear(&r);
+  recorded_run_clear(&r);
   ric_system_destroy(&first);
 }
 
@@ -147,14 +147,14 @@ static void impulse_reaches_a_contact_at_rest(void **state) {
   ric_obstacle sides[2] = {ric_obstacle_floor(0, 0.3), ric_obstacle_wall(1, 0.5)};
   ric_system *system = NULL;
   assert_int_equal(ric_system_create_mck(&pair, sides, 2, &system, NULL), RIC_OK);
-  recorded r = record(system, NULL, (double[]){0.3, 0}, (double[]){0, 1}, 1.2);
-  const ric_event *rest = recorded_first(&r, RIC_EVENT_REST), *hit = recorded_first(&r, RIC_EVENT_COUPLED);
+  recorded_run r = record_run(system, NULL, (double[]){0.3, 0}, (double[]){0, 1}, 1.2);
+  const ric_event *rest = recorded_run_first(&r, RIC_EVENT_REST), *hit = recorded_run_first(&r, RIC_EVENT_COUPLED);
   assert_non_null(rest);
   assert_non_null(hit);
   assert_int_equal(rest->obstacle, 0);
   assert_true(r.run.events[RIC_EVENT_COUPLED] >= 2); /* the hit on the wall, and the floor that bears its impulse */
   assert_close(r.run.energy_end, r.run.energy_start - r.run.impact_loss, 1e-13);
-  recorded_clear(&r);
+  recorded_run_clear(&r);
   ric_system_destroy(&system);
 }
 
@@ -171,12 +171,12 @@ static void masses_that_lift_each_other_come_to_rest(void **state) {
   for (int method = RIC_FLOW_TAYLOR; method <= RIC_FLOW_CVODES; method++) {
     ric_trajectory_options options = ric_trajectory_options_default();
     options.flow.method = (ric_flow_method)method;
-    recorded r = record(system, &options, (double[]){0.5, 0.45}, (double[]){0.1, -0.3}, 30);
+    recorded_run r = record_run(system, &options, (double[]){0.5, 0.45}, (double[]){0.1, -0.3}, 30);
     assert_int_equal(r.run.outcome, RIC_RUN_COMPLETED);
     assert_true(r.count < 1000);
     assert_true(r.q[0] == 0.3 && r.q[1] == 0.4 && r.u[0] == 0 && r.u[1] == 0);
     assert_close(r.run.energy_start - r.run.impact_loss, r.run.energy_end, 1e-9);
-    recorded_clear(&r);
+    recorded_run_clear(&r);
   }
   ric_system_destroy(&system);
 }
@@ -243,7 +243,7 @@ static ric_system *body_system(body *b) {
 }
 
 /* Events after the last impact that was faster than what noise of 1e-11 in a gap makes, 4e-6 or so. */
-static size_t events_in_noise(const recorded *r) {
+static size_t events_in_noise(const recorded_run *r) {
   size_t count = 0;
   while (count < r->count && !(r->events[r->count - 1 - count].gap_rate < -1e-5))
     count++;
@@ -252,7 +252,7 @@ static size_t events_in_noise(const recorded *r) {
 
 /* Few events in the noise, and no energy out of nothing: events are off by the time tolerance of 1e-12, and corrections
  * of gaps, a few in all, by 1e-11. */
-static void expect_rest(const recorded *r) {
+static void expect_rest(const recorded_run *r) {
   assert_int_equal(r->run.outcome, RIC_RUN_COMPLETED);
   assert_true(events_in_noise(r) <= 20);
   assert_close(r->run.energy_start - r->run.impact_loss, r->run.energy_end, 1e-10 + 1e-12 * (double)r->count);
@@ -268,13 +268,13 @@ static void contacts_in_the_same_place_come_to_rest_together(void **state) {
               .normal = {{1, 0.6, 0.2}, {1, 0.6, 0.2}, {1, -0.6, -0.2}},
               .restitution = {e, e, e}};
     ric_system *system = body_system(&b);
-    recorded r = record(system, NULL, (double[]){0.5, tilt, 0}, (double[]){0, 0, 0}, 40);
+    recorded_run r = record_run(system, NULL, (double[]){0.5, tilt, 0}, (double[]){0, 0, 0}, 40);
     expect_rest(&r);
     for (size_t j = 0; j < b.planes; j++) {
       assert_close(ric_system_gap(system, j, 40, r.q), 0, 1e-10);
       assert_close(ric_system_gap_rate(system, j, 40, r.q, r.u), 0, 1e-10);
     }
-    recorded_clear(&r);
+    recorded_run_clear(&r);
     ric_system_destroy(&system);
   }
 }
@@ -302,14 +302,14 @@ static void redundant_legs_of_a_table_come_to_rest(void **state) {
     for (size_t i = 1; i < SPEEDS; i++)
       q[i] = k % (i + 2) == 0 ? 0 : random_uniform(&source, -0.1, 0.1);
     ric_system *system = body_system(&b);
-    recorded r = record(system, NULL, q, u, 40);
+    recorded_run r = record_run(system, NULL, q, u, 40);
     expect_rest(&r);
     assert_true(r.count < 5000);
     for (size_t i = 0; i < SPEEDS; i++) {
       assert_close(r.q[i], 0, 1e-11);
       assert_close(r.u[i], 0, 1e-11);
     }
-    recorded_clear(&r);
+    recorded_run_clear(&r);
     ric_system_destroy(&system);
   }
 }

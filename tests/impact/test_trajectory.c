@@ -1,9 +1,9 @@
 /* Trajectories of chains: against exact motions, conservation, sampling, and what happens to bad input. */
 #include "support.h"
 
-#include "witness/recorded.h"
+#include "witness/recorded_run.h"
 #include "scenario/example1.h"
-#include "witness/solved.h"
+#include "witness/solved_orbit.h"
 
 static const double table_period = 4.69756390941, table_gamma = 0.149153131912;
 
@@ -19,12 +19,12 @@ static ric_system *chain_system(const ric_chain *chain) {
 
 /* An orbit and the system it moves in. */
 typedef struct example {
-  solved of;
+  solved_orbit of;
   ric_system *system;
 } example;
 
 static example example_create(size_t n, double gamma, double period) {
-  example e = {.of = solved_by(RIC_METHOD_IMPULSE, scenario_middle(n, RIC_ENDS_PERIODIC, gamma, period))};
+  example e = {.of = solve_orbit(RIC_METHOD_IMPULSE, scenario_middle(n, RIC_ENDS_PERIODIC, gamma, period))};
   assert_int_equal(e.of.orbit.outcome, RIC_ADMISSIBLE);
   e.system = chain_system(&e.of.scenario.chain);
   return e;
@@ -32,28 +32,28 @@ static example example_create(size_t n, double gamma, double period) {
 
 static void example_destroy(example *e) {
   ric_system_destroy(&e->system);
-  solved_clear(&e->of);
+  solved_orbit_clear(&e->of);
 }
 
 /* At 3 T / 2, after one impact, against the orbit at T / 2. */
 static void orbit_is_followed_to_rounding_through_an_impact(void **state) {
   (void)state;
   example e = example_create(30, table_gamma, table_period);
-  recorded r = record(e.system, NULL, e.of.orbit.q, e.of.orbit.v, 1.5 * table_period);
-  assert_int_equal(recorded_impacts(&r), 1);
+  recorded_run r = record_run(e.system, NULL, e.of.orbit.q, e.of.orbit.v, 1.5 * table_period);
+  assert_int_equal(recorded_run_impacts(&r), 1);
   assert_close(r.events[0].time, table_period, 1e-14);
   for (size_t i = 0; i < 30; i++) {
     assert_close(r.q[i], e.of.orbit.q_half[i], 1e-14);
     assert_close(r.u[i], e.of.orbit.v_half[i], 1e-14);
   }
-  recorded_clear(&r);
+  recorded_run_clear(&r);
   example_destroy(&e);
 }
 
 static void source_simulation_has_one_impact_per_period(void **state) {
   (void)state;
   example e = example_create(30, table_gamma, table_period);
-  recorded r = record(e.system, NULL, e.of.orbit.q, e.of.orbit.v, 19.5 * table_period);
+  recorded_run r = record_run(e.system, NULL, e.of.orbit.q, e.of.orbit.v, 19.5 * table_period);
   assert_int_equal(r.count, 19);
   for (size_t k = 0; k < r.count; k++) {
     assert_int_equal(r.events[k].kind, RIC_EVENT_TRANSVERSAL);
@@ -61,18 +61,18 @@ static void source_simulation_has_one_impact_per_period(void **state) {
     assert_close(r.events[k].time, (double)(k + 1) * table_period, 1e-9);
   }
   assert_close(r.run.energy_end, r.run.energy_start, 1e-14 * r.run.energy_start);
-  recorded_clear(&r);
+  recorded_run_clear(&r);
   example_destroy(&e);
 }
 
 static void elastic_run_conserves_energy_over_a_thousand_periods(void **state) {
   (void)state;
   example e = example_create(30, 0.09, example1_period());
-  recorded r = record(e.system, NULL, e.of.orbit.q, e.of.orbit.v, 1000.5 * example1_period());
-  assert_int_equal(recorded_impacts(&r), 1000);
+  recorded_run r = record_run(e.system, NULL, e.of.orbit.q, e.of.orbit.v, 1000.5 * example1_period());
+  assert_int_equal(recorded_run_impacts(&r), 1000);
   assert_close(r.run.energy_end / r.run.energy_start, 1, 1e-12);
   assert_true(r.run.impact_loss == 0);
-  recorded_clear(&r);
+  recorded_run_clear(&r);
   example_destroy(&e);
 }
 
@@ -90,19 +90,19 @@ static void elastic_motion_is_reversible(void **state) {
       q[i] = random_uniform(&source, -0.9, 1);
       u[i] = random_uniform(&source, -2, 2);
     }
-    recorded there = record(system, NULL, q, u, end);
+    recorded_run there = record_run(system, NULL, q, u, end);
     for (size_t i = 0; i < N; i++)
       there.u[i] = -there.u[i];
-    recorded back = record(system, NULL, there.q, there.u, end);
-    assert_int_equal(recorded_impacts(&there), recorded_impacts(&back));
-    assert_true(recorded_impacts(&there) > 3);
+    recorded_run back = record_run(system, NULL, there.q, there.u, end);
+    assert_int_equal(recorded_run_impacts(&there), recorded_run_impacts(&back));
+    assert_true(recorded_run_impacts(&there) > 3);
     double off = 0, growth = growth_of(system, q, u, end);
     for (size_t i = 0; i < N; i++)
       off = fmax(off, fmax(fabs(back.q[i] - q[i]), fabs(back.u[i] + u[i])));
     if (!(off <= 1e-15 * growth * growth)) /* rounding, grown there and back */
       fail_msg("run %d: off by %g, growth %g, %zu events", k, off, growth, there.count);
-    recorded_clear(&there);
-    recorded_clear(&back);
+    recorded_run_clear(&there);
+    recorded_run_clear(&back);
     ric_system_destroy(&system);
   }
 }
@@ -125,12 +125,12 @@ static void samples_are_the_states_at_their_times(void **state) {
   ric_sampler_finish(&sampler, trajectory);
   assert_int_equal(sampler.next, TIMES);
   for (size_t k = 0; k < TIMES; k += 7) {
-    recorded r = record(e.system, NULL, e.of.orbit.q, e.of.orbit.v, times[k]);
+    recorded_run r = record_run(e.system, NULL, e.of.orbit.q, e.of.orbit.v, times[k]);
     for (size_t i = 0; i < N; i++) {
       assert_close(q[k * N + i], r.q[i], 1e-13);
       assert_close(u[k * N + i], r.u[i], 1e-13);
     }
-    recorded_clear(&r);
+    recorded_run_clear(&r);
   }
   ric_trajectory_destroy(&trajectory);
   example_destroy(&e);
@@ -166,14 +166,14 @@ static void long_chain_moves_like_a_short_one(void **state) {
   (void)state;
   example small = example_create(60, 0.05, example1_period()), large = example_create(2000, 0.05, example1_period());
   double end = 5.5 * example1_period();
-  recorded a = record(small.system, NULL, small.of.orbit.q, small.of.orbit.v, end);
-  recorded b = record(large.system, NULL, large.of.orbit.q, large.of.orbit.v, end);
-  assert_int_equal(recorded_impacts(&a), 5);
-  assert_int_equal(recorded_impacts(&b), 5);
+  recorded_run a = record_run(small.system, NULL, small.of.orbit.q, small.of.orbit.v, end);
+  recorded_run b = record_run(large.system, NULL, large.of.orbit.q, large.of.orbit.v, end);
+  assert_int_equal(recorded_run_impacts(&a), 5);
+  assert_int_equal(recorded_run_impacts(&b), 5);
   for (size_t i = 0; i < 60; i++)
     assert_close(a.q[i], b.q[970 + i], 1e-12);
-  recorded_clear(&a);
-  recorded_clear(&b);
+  recorded_run_clear(&a);
+  recorded_run_clear(&b);
   example_destroy(&small);
   example_destroy(&large);
 }
@@ -187,13 +187,13 @@ static void touches_are_told_however_they_are_rounded(void **state) {
   ric_system *system = lattice_system(&mass, &floor, 1);
   for (int k = 0; k < 500; k++) {
     double phase = -1.5 + 0.006 * k, q = sin(phase), u = cos(phase), end = 6 * pi;
-    recorded r = record(system, NULL, &q, &u, end);
+    recorded_run r = record_run(system, NULL, &q, &u, end);
     assert_int_equal(r.count, 3);
     for (size_t i = 0; i < 3; i++) {
       assert_int_equal(r.events[i].kind, RIC_EVENT_GRAZING);
       assert_close(r.events[i].time, 1.5 * pi - phase + 2 * pi * (double)i, 1e-6);
     }
-    recorded_clear(&r);
+    recorded_run_clear(&r);
   }
   ric_system_destroy(&system);
 }

@@ -1,7 +1,7 @@
 /* Bad input and motions that cannot go on: named errors, or outcomes that keep the state. */
 #include "support.h"
 
-#include "witness/recorded.h"
+#include "witness/recorded_run.h"
 
 static void expect(ric_status status, ric_status expected, const ric_error *error, const char *part) {
   assert_int_equal(status, expected);
@@ -77,13 +77,13 @@ static void starts_are_checked(void **state) {
   ric_error error;
   ric_run run;
   double zero = 0, low = -0.25, nan = NAN;
-  expect(ric_trajectory_run(b.trajectory, 1, NULL, &run, &error), RIC_EINVAL, &error, "no start");
+  expect(ric_trajectory_run(b.trajectory, 1, NULL, &run, &error), RIC_EINVAL, &error, "has not been started");
   expect(ric_trajectory_start(b.trajectory, 0, &low, &zero, &error), RIC_EINVAL, &error,
          "the gap of obstacle 0 (a floor) is -0.25, expected >= 0");
   expect(ric_trajectory_start(b.trajectory, 0, &nan, &zero, &error), RIC_EINVAL, &error, "q[0] = nan");
   expect(ric_trajectory_start(b.trajectory, 0, &zero, &nan, &error), RIC_EINVAL, &error, "u[0] = nan");
   expect(ric_trajectory_start(b.trajectory, INFINITY, &zero, &zero, &error), RIC_EINVAL, &error, "t = inf");
-  expect(ric_trajectory_run(b.trajectory, 1, NULL, &run, &error), RIC_EINVAL, &error, "no start");
+  expect(ric_trajectory_run(b.trajectory, 1, NULL, &run, &error), RIC_EINVAL, &error, "has not been started");
   assert_int_equal(ric_trajectory_start(b.trajectory, 3, &zero, &zero, &error), RIC_OK);
   expect(ric_trajectory_run(b.trajectory, 2, NULL, &run, &error), RIC_EINVAL, &error, "end = 2");
   expect(ric_trajectory_run(b.trajectory, NAN, NULL, &run, &error), RIC_EINVAL, &error, "end = nan");
@@ -132,14 +132,14 @@ static void blow_up_is_an_outcome_that_keeps_the_state(void **state) {
   for (int method = RIC_FLOW_TAYLOR; method <= RIC_FLOW_CVODES; method++) {
     ric_trajectory_options o = ric_trajectory_options_default();
     o.flow.method = (ric_flow_method)method;
-    recorded r = record(system, &o, (double[]){1}, (double[]){1}, 2);
+    recorded_run r = record_run(system, &o, (double[]){1}, (double[]){1}, 2);
     assert_int_equal(r.run.outcome, RIC_RUN_BLOW_UP);
     assert_true(strlen(r.run.reason) > 0);
     assert_true(r.run.time > 0.99 && r.run.time <= 1 + 1e-6);
     assert_true(isfinite(r.q[0]) && r.q[0] > 100);
     if (method == RIC_FLOW_TAYLOR) /* CVODES loses its accuracy on the way up */
       assert_close(r.q[0] * (1 - r.run.time), 1, 1e-3);
-    recorded_clear(&r);
+    recorded_run_clear(&r);
   }
   ric_system_destroy(&system);
 }
@@ -165,12 +165,12 @@ static void failing_callbacks_are_an_outcome_that_keeps_the_state(void **state) 
         .coordinates = 1, .speeds = 1, .obstacles = 1, .force = fails_late, .gap = height, .user = &by_value};
     ric_system *system = NULL;
     assert_int_equal(ric_system_create_mechanical(&model, &system, NULL), RIC_OK);
-    recorded r = record(system, NULL, (double[]){5}, (double[]){0}, 2);
+    recorded_run r = record_run(system, NULL, (double[]){5}, (double[]){0}, 2);
     assert_int_equal(r.run.outcome, RIC_RUN_CALLBACK_FAILED);
     assert_non_null(strstr(r.run.reason, "force"));
     assert_true(r.run.time >= 0 && r.run.time <= 0.5);
     assert_close(r.q[0], 5 - r.run.time * r.run.time / 2, 1e-10);
-    recorded_clear(&r);
+    recorded_run_clear(&r);
     ric_system_destroy(&system);
   }
 }

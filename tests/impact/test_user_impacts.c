@@ -3,7 +3,7 @@
 #include "support.h"
 
 #include "witness/double_pendulum.h"
-#include "witness/recorded.h"
+#include "witness/recorded_run.h"
 
 /* The lower bob may not pass the wall at x = 0.6. */
 static int wall_gap(double t, const double *q, size_t obstacle, double *h, void *user) {
@@ -53,12 +53,12 @@ static void pendulum_conserves_energy_through_elastic_impacts(void **state) {
   (void)state;
   for (int with_gradient = 0; with_gradient <= 1; with_gradient++) {
     ric_system *system = pendulum(NULL, with_gradient);
-    recorded r = record(system, NULL, swing, still, 30);
+    recorded_run r = record_run(system, NULL, swing, still, 30);
     assert_int_equal(r.run.outcome, RIC_RUN_COMPLETED);
-    assert_true(recorded_impacts(&r) >= 5);
+    assert_true(recorded_run_impacts(&r) >= 5);
     /* steps of CVODES at tolerance 1e-12, each off by a few of it, in a motion of size 2 */
     assert_close(r.run.energy_end, r.run.energy_start, 1e-12 * (double)r.run.flow.steps);
-    recorded_clear(&r);
+    recorded_run_clear(&r);
     ric_system_destroy(&system);
   }
 }
@@ -132,17 +132,17 @@ static void pendulum_agrees_with_its_first_order_form(void **state) {
                            .user = &e};
   ric_system *first = NULL, *second = pendulum(&e, 1);
   assert_int_equal(ric_system_create_first_order(&model, &first, NULL), RIC_OK);
-  recorded a = record(first, NULL, x, NULL, end), b = record(second, NULL, swing, still, end);
-  assert_int_equal(recorded_impacts(&a), recorded_impacts(&b));
-  assert_true(recorded_impacts(&a) >= 4);
+  recorded_run a = record_run(first, NULL, x, NULL, end), b = record_run(second, NULL, swing, still, end);
+  assert_int_equal(recorded_run_impacts(&a), recorded_run_impacts(&b));
+  assert_true(recorded_run_impacts(&a) >= 4);
   for (size_t i = 0; i < a.count; i++)
     assert_close(a.events[i].time, b.events[i].time, 1e-8);
   for (size_t i = 0; i < 2; i++) {
     assert_close(a.q[i], b.q[i], 1e-8);
     assert_close(a.q[2 + i], b.u[i], 1e-8);
   }
-  recorded_clear(&a);
-  recorded_clear(&b);
+  recorded_run_clear(&a);
+  recorded_run_clear(&b);
   ric_system_destroy(&first);
   ric_system_destroy(&second);
 }
@@ -250,9 +250,9 @@ static void skate_agrees_with_its_circles(void **state) {
                             .gap_gradient = k ? skate_gradient : NULL};
     ric_system *system = NULL;
     assert_int_equal(ric_system_create_mechanical(&model, &system, NULL), RIC_OK);
-    recorded r = record(system, NULL, s.q, s.u, end);
+    recorded_run r = record_run(system, NULL, s.q, s.u, end);
     size_t hits = skate_run(&s, e, end);
-    assert_int_equal(recorded_impacts(&r), hits);
+    assert_int_equal(recorded_run_impacts(&r), hits);
     assert_true(hits >= 1);
     for (size_t i = 0; i < 3; i++)
       assert_close(r.q[i], s.q[i], 1e-9);
@@ -261,7 +261,7 @@ static void skate_agrees_with_its_circles(void **state) {
     double energy = (r.u[0] * r.u[0] + inertia * r.u[1] * r.u[1]) / 2;
     if (e == 1)
       assert_close(energy, (1 + inertia * 0.49) / 2, 1e-12);
-    recorded_clear(&r);
+    recorded_run_clear(&r);
     ric_system_destroy(&system);
   }
 }

@@ -2,10 +2,10 @@
 #include "support.h"
 
 #include "witness/allocation_counter.h"
-#include "witness/approximated.h"
+#include "witness/ritz_approximation.h"
 #include "witness/forced_oscillator.h"
 #include "scenario/family_scenario.h"
-#include "witness/solved.h"
+#include "witness/solved_orbit.h"
 
 #ifndef ALLOCATIONS_ARE_COUNTED
 
@@ -24,7 +24,7 @@ int main(void) {
 /* Solves with changing coupling and period; returns the allocations of all but the first. */
 static size_t allocations_of_repeats(scenario s) {
   enum { REPEATS = 100 };
-  solved x = solved_by(RIC_METHOD_IMPULSE, s);
+  solved_orbit x = solve_orbit(RIC_METHOD_IMPULSE, s);
   size_t before = allocations;
   watching = true;
   for (int k = 0; k < REPEATS; k++) {
@@ -34,16 +34,16 @@ static size_t allocations_of_repeats(scenario s) {
   }
   watching = false;
   size_t during = allocations - before;
-  solved_clear(&x);
+  solved_orbit_clear(&x);
   return during;
 }
 
 static void the_counter_counts(void **state) {
   (void)state;
   size_t before = allocations;
-  solved x = solved_by(RIC_METHOD_IMPULSE, scenario_middle(9, RIC_ENDS_FREE, 0.1, 5));
+  solved_orbit x = solve_orbit(RIC_METHOD_IMPULSE, scenario_middle(9, RIC_ENDS_FREE, 0.1, 5));
   assert_true(allocations > before + 5);
-  solved_clear(&x);
+  solved_orbit_clear(&x);
 }
 
 static void solving_again_on_a_ring_allocates_nothing(void **state) {
@@ -80,7 +80,7 @@ static void solving_again_on_a_unit_cell_allocates_nothing(void **state) {
 
 /* Allocations of multipliers once their workspaces are there, over a range of couplings. */
 static size_t allocations_of_multipliers(scenario s, ric_multiplier_method method) {
-  solved x = solved_by(RIC_METHOD_IMPULSE, s);
+  solved_orbit x = solve_orbit(RIC_METHOD_IMPULSE, s);
   ric_orbit_multiplier_options options = ric_orbit_multiplier_options_default();
   ric_multipliers m;
   size_t before = 0;
@@ -98,7 +98,7 @@ static size_t allocations_of_multipliers(scenario s, ric_multiplier_method metho
   size_t during = allocations - before;
   watching = false;
   ric_multipliers_clear(&m);
-  solved_clear(&x);
+  solved_orbit_clear(&x);
   return during;
 }
 
@@ -399,8 +399,8 @@ static void families_without_memory_are_refused(void **state) {
 /* Newton's method of others may ask for F and J a thousand times. */
 static void equations_of_ritz_allocate_nothing(void **state) {
   (void)state;
-  shot s = duffing_mode(0.1, 0.4, -1);
-  approximated a = approximate(&s, 4, true);
+  shooting_solution s = duffing_mode(0.1, 0.4, -1);
+  ritz_approximation a = ritz_approximate(&s, 4, true);
   double F[11], J[121], F_period[11], q[2], v[2];
   size_t before = allocations;
   assert_int_equal(ric_ritz_residual(a.ritz, a.c, s.given, F, J, F_period, NULL), RIC_OK);
@@ -409,11 +409,11 @@ static void equations_of_ritz_allocate_nothing(void **state) {
   ric_ritz_state(a.ritz, a.c, s.given, 1, q, v);
   assert_true(ric_ritz_defect(a.ritz, a.c, s.given) > 0);
   assert_int_equal(allocations - before, 0);
-  approximated_clear(&a);
-  shot_clear(&s);
+  ritz_approximation_clear(&a);
+  shooting_solution_clear(&s);
 }
 
-static ric_status fit_by_ritz(shot *s) {
+static ric_status fit_by_ritz(shooting_solution *s) {
   double c[35];
   ric_ritz *ritz = NULL;
   ric_status status = ric_ritz_create(s->system, 0, NULL, &ritz, NULL);
@@ -425,7 +425,7 @@ static ric_status fit_by_ritz(shot *s) {
 
 static void fits_of_ritz_without_memory_are_refused(void **state) {
   (void)state;
-  shot s = duffing_mode(0.1, 0.4, -1);
+  shooting_solution s = duffing_mode(0.1, 0.4, -1);
   ric_status status = RIC_ENOMEM;
   size_t k = 0;
   for (; status == RIC_ENOMEM && k < 1000; k++) {
@@ -437,18 +437,18 @@ static void fits_of_ritz_without_memory_are_refused(void **state) {
   until_refusal = 0;
   assert_int_equal(status, RIC_OK);
   assert_true(k > 10);
-  shot_clear(&s);
+  shooting_solution_clear(&s);
 }
 
 static void check_estimate(scenario s, ric_orbit_method method) {
   size_t before = most_live = live;
-  solved x = solved_by(method, s);
+  solved_orbit x = solve_orbit(method, s);
   double taken = (double)(most_live - before), estimate = ric_orbit_bytes(&s.chain, s.pattern, method);
   print_message("n = %zu, ends %d: %.0f bytes taken, %.0f estimated\n", s.chain.particles, (int)s.chain.ends, taken,
                 estimate);
   assert_true(taken <= 1.5 * estimate + 200e3);
   assert_true(taken >= 0.5 * estimate);
-  solved_clear(&x);
+  solved_orbit_clear(&x);
 }
 
 static void memory_is_what_was_estimated(void **state) {

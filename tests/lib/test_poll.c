@@ -1,7 +1,7 @@
 /* The poll callback: asked during every computation, and obeyed at any moment. */
 #include "support.h"
 
-#include "witness/solved.h"
+#include "witness/solved_orbit.h"
 
 /* Says stop from its `limit`-th call on. */
 typedef struct countdown {
@@ -97,7 +97,7 @@ static void absent_callback_never_stops(void **state) {
 static void multipliers_stop_at_any_call(void **state) {
   (void)state;
   countdown all = {.limit = INT32_MAX};
-  solved x = solved_by(RIC_METHOD_IMPULSE, scenario_word("s.........", 4, RIC_ENDS_PERIODIC, 0.3, 5));
+  solved_orbit x = solve_orbit(RIC_METHOD_IMPULSE, scenario_word("s.........", 4, RIC_ENDS_PERIODIC, 0.3, 5));
   ric_orbit_multiplier_options options = ric_orbit_multiplier_options_default();
   ric_multipliers m;
   ric_error error;
@@ -117,7 +117,7 @@ static void multipliers_stop_at_any_call(void **state) {
     assert_true(c.calls < limit + 3);
   }
   ric_multipliers_clear(&m);
-  solved_clear(&x);
+  solved_orbit_clear(&x);
 }
 
 int main(void) {

@@ -2,12 +2,12 @@
 
 #include "support.h"
 
-static int counts(const solved *x, size_t particle, int free_only) {
+static int counts(const solved_orbit *x, size_t particle, int free_only) {
   int is_free = ric_pattern_role(x->scenario.pattern, particle) == RIC_ROLE_FREE;
   return ric_chain_floor(&x->scenario.chain, particle) > -INFINITY && (is_free || !free_only);
 }
 
-static sampled_gap smallest(const solved *x, modal_motion *motion, double low, double high, size_t samples,
+static sampled_gap smallest(const solved_orbit *x, modal_motion *motion, double low, double high, size_t samples,
                             int free_only) {
   sampled_gap best = {.gap = INFINITY};
   double *q = calloc(motion->n, sizeof *q);
@@ -25,15 +25,15 @@ static sampled_gap smallest(const solved *x, modal_motion *motion, double low, d
   return best;
 }
 
-sampled_gap sampled_clearance(const solved *x, modal_motion *motion, size_t samples) {
+sampled_gap sampled_clearance(const solved_orbit *x, modal_motion *motion, size_t samples) {
   return smallest(x, motion, 0, x->orbit.period / 2, samples, 1);
 }
 
-sampled_gap sampled_any(const solved *x, modal_motion *motion, double low, double high, size_t samples) {
+sampled_gap sampled_any(const solved_orbit *x, modal_motion *motion, double low, double high, size_t samples) {
   return smallest(x, motion, low, high, samples, 0);
 }
 
-sampled_gap refined_gap(const solved *x, const modal_motion *motion, sampled_gap near, double step) {
+sampled_gap refined_gap(const solved_orbit *x, const modal_motion *motion, sampled_gap near, double step) {
   double low = fmax(0, near.time - step), high = fmin(x->orbit.period / 2, near.time + step), v;
   for (int k = 0; k < 60; k++) { /* bisection on the sign of the velocity */
     double t = (low + high) / 2;

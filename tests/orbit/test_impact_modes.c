@@ -2,7 +2,7 @@
 #include "support.h"
 
 #include "witness/impact_study.h"
-#include "witness/solved.h"
+#include "witness/solved_orbit.h"
 
 enum { MOST = 12, TRIALS = 400 };
 
@@ -153,28 +153,28 @@ static void check_shooting(impact_study *s) {
   const ric_shooting_problem problem = {
       .kind = RIC_MOTION_EVEN, .at_start = &zero, .start_count = 1, .flow = ric_flow_options_default()};
   ric_shooting *shooting;
-  ric_orbit shot;
+  ric_orbit shooting_solution;
   ric_error error;
   double z[MOST] = {0}, tolerance = impact_study_agreement(s);
   assert_int_equal(ric_shooting_create(s->system, &problem, &shooting, &error), RIC_OK);
-  assert_int_equal(ric_orbit_init(&shot, s->n, 1, &error), RIC_OK);
+  assert_int_equal(ric_orbit_init(&shooting_solution, s->n, 1, &error), RIC_OK);
   if (ric_shooting_solve(shooting, z, s->orbit.period, 0, NULL, &error) != RIC_OK ||
-      ric_shooting_orbit(shooting, z, s->orbit.period, &shot, &error) != RIC_OK)
+      ric_shooting_orbit(shooting, z, s->orbit.period, &shooting_solution, &error) != RIC_OK)
     fail_msg("%s", error.message);
-  if (!(state_difference(&s->orbit, &shot) <= tolerance))
+  if (!(state_difference(&s->orbit, &shooting_solution) <= tolerance))
     fail_msg("n %zu, period %.17g, condition %g: differs by %g, scale %g", s->n, s->orbit.period, s->orbit.condition,
-             state_difference(&s->orbit, &shot), impact_study_scale(s));
-  assert_close(s->orbit.energy, shot.energy, 1e-10 * s->orbit.energy);
-  if (is_clear(s) && s->orbit.outcome != shot.outcome)
+             state_difference(&s->orbit, &shooting_solution), impact_study_scale(s));
+  assert_close(s->orbit.energy, shooting_solution.energy, 1e-10 * s->orbit.energy);
+  if (is_clear(s) && s->orbit.outcome != shooting_solution.outcome)
     fail_msg("%s (%s), by shooting %s (%s)", ric_outcome_name(s->orbit.outcome), s->orbit.reason,
-             ric_outcome_name(shot.outcome), shot.reason);
+             ric_outcome_name(shooting_solution.outcome), shooting_solution.reason);
   if (s->orbit.clearance > -1e3) { /* not NaN */
-    assert_close(s->orbit.clearance, shot.clearance, tolerance * 10);
-    assert_int_equal(s->orbit.clearance_particle, shot.clearance_particle);
+    assert_close(s->orbit.clearance, shooting_solution.clearance, tolerance * 10);
+    assert_int_equal(s->orbit.clearance_particle, shooting_solution.clearance_particle);
   }
   compared++;
-  outcomes[shot.outcome]++;
-  ric_orbit_clear(&shot);
+  outcomes[shooting_solution.outcome]++;
+  ric_orbit_clear(&shooting_solution);
   ric_shooting_destroy(&shooting);
 }
 
@@ -198,7 +198,7 @@ static void uniform_chains_have_the_orbits_of_their_solver(void **state) {
     ric_chain chain = r.chain;
     double period = r.period;
     scenario_clear(&r);
-    solved x = solved_by(RIC_METHOD_IMPULSE, scenario_single(n, chain.ends, chain.gamma, period, hit));
+    solved_orbit x = solve_orbit(RIC_METHOD_IMPULSE, scenario_single(n, chain.ends, chain.gamma, period, hit));
     ric_system *system;
     ric_impact_modes *modes;
     ric_orbit orbit;
@@ -206,7 +206,7 @@ static void uniform_chains_have_the_orbits_of_their_solver(void **state) {
     assert_int_equal(ric_impact_modes_create(system, hit, &modes, NULL), RIC_OK);
     assert_int_equal(ric_orbit_init(&orbit, n, 1, NULL), RIC_OK);
     assert_int_equal(ric_impact_modes_orbit(modes, period, &orbit, NULL), RIC_OK);
-    double tolerance = agreement(&x) * fmax(1, orbit.condition / 10);
+    double tolerance = method_tolerance(&x) * fmax(1, orbit.condition / 10);
     assert_close(state_difference(&orbit, &x.orbit), 0, tolerance);
     assert_close(orbit.energy, x.orbit.energy, 1e-10 * orbit.energy);
     assert_int_equal(orbit.outcome, x.orbit.outcome);
@@ -215,7 +215,7 @@ static void uniform_chains_have_the_orbits_of_their_solver(void **state) {
     ric_orbit_clear(&orbit);
     ric_impact_modes_destroy(&modes);
     ric_system_destroy(&system);
-    solved_clear(&x);
+    solved_orbit_clear(&x);
   }
 }
 

@@ -4,7 +4,7 @@
  * (omega^2 - 1) / (2 gamma) - 1 above it. The slowest decay wins. */
 #include "support.h"
 
-#include "witness/solved.h"
+#include "witness/solved_orbit.h"
 
 static const double pi = 3.14159265358979323846;
 
@@ -15,9 +15,9 @@ static double expected_rate(double gamma, double period) {
 }
 
 static double impulse_with(size_t n, ric_ends ends, double gamma, double period) {
-  solved x = solved_by(RIC_METHOD_IMPULSE, scenario_middle(n, ends, gamma, period));
+  solved_orbit x = solve_orbit(RIC_METHOD_IMPULSE, scenario_middle(n, ends, gamma, period));
   double impulse = x.orbit.impulse[0];
-  solved_clear(&x);
+  solved_orbit_clear(&x);
   return impulse;
 }
 
@@ -62,10 +62,10 @@ static void chains_with_ends_converge_at_the_same_rate(void **state) {
 static void displacements_decay_from_the_impact_at_that_rate(void **state) {
   (void)state;
   const double gamma = 0.15, period = 1.5 * pi;
-  solved x = solved_by(RIC_METHOD_IMPULSE, scenario_middle(101, RIC_ENDS_PERIODIC, gamma, period));
+  solved_orbit x = solve_orbit(RIC_METHOD_IMPULSE, scenario_middle(101, RIC_ENDS_PERIODIC, gamma, period));
   double q10 = x.orbit.q[50 + 10] - x.orbit.q_half[50 + 10], q20 = x.orbit.q[50 + 20] - x.orbit.q_half[50 + 20];
   assert_close(log(q10 / q20) / 10, expected_rate(gamma, period), 1e-3);
-  solved_clear(&x);
+  solved_orbit_clear(&x);
 }
 
 int main(void) {

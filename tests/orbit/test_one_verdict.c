@@ -4,7 +4,7 @@
 #include "support.h"
 
 #include "sampled_gaps.h"
-#include "witness/shot.h"
+#include "witness/shooting_solution.h"
 
 enum { MOST = 12, SAMPLES = 4000 };
 
@@ -38,8 +38,8 @@ static const example examples[] = {
     {"s.h.", RIC_ENDS_PERIODIC, 0.05, 5.4, {-1, 0.0091, -1, -1}, RIC_INADMISSIBLE, "particle 1 passes its floor"},
     {"s..h.", RIC_ENDS_FIXED, 0.1, 5, {-1, -1, -0.02, -1, -1}, RIC_INADMISSIBLE, "particle 2 is below its floor"},
     /* Above the linear mode the impulse pulls; at T/2 the floor has been passed before. */
-    {"s", RIC_ENDS_FREE, 0, 8, {0}, RIC_INADMISSIBLE, "particle 0 is pulled by its floor at t = 0"},
-    {"..s..", RIC_ENDS_FREE, 0.02, 7.5, {0}, RIC_INADMISSIBLE, "particle 2 is pulled by its floor at t = 0"},
+    {"s", RIC_ENDS_FREE, 0, 8, {0}, RIC_INADMISSIBLE, "impulse of particle 0 at t = 0 is -"},
+    {"..s..", RIC_ENDS_FREE, 0.02, 7.5, {0}, RIC_INADMISSIBLE, "impulse of particle 2 at t = 0 is -"},
     {"..h..", RIC_ENDS_PERIODIC, 0.02, 7.5, {0}, RIC_INADMISSIBLE, "particle 2 passes its floor"},
 };
 
@@ -48,8 +48,8 @@ static void check(ric_status status, const ric_error *error) {
     fail_msg("%s", error->message);
 }
 
-static solved solve(const example *e, double *floors) {
-  solved x = solved_by(RIC_METHOD_IMPULSE, scenario_word(e->word, 1, e->ends, e->gamma, e->period));
+static solved_orbit solve(const example *e, double *floors) {
+  solved_orbit x = solve_orbit(RIC_METHOD_IMPULSE, scenario_word(e->word, 1, e->ends, e->gamma, e->period));
   for (size_t i = 0; i < x.scenario.chain.particles; i++)
     floors[i] = e->floors[0] != 0 ? e->floors[i] : -1;
   x.scenario.chain.floors = floors;
@@ -103,7 +103,7 @@ static void assert_same(const ric_orbit *a, const ric_orbit *b, double scale, bo
 }
 
 /* By shooting, in a chain or with its mirror image under walls. */
-static ric_orbit *shoot(const solved *x, double scale, bool mirrored, shot *s) {
+static ric_orbit *shoot(const solved_orbit *x, double scale, bool mirrored, shooting_solution *s) {
   const ric_chain *chain = &x->scenario.chain;
   const ric_lattice lattice = ric_lattice_of_chain(chain);
   size_t n = chain->particles, count[2] = {0}, hit[2][MOST];
@@ -127,14 +127,14 @@ static ric_orbit *shoot(const solved *x, double scale, bool mirrored, shot *s) {
                                         .half_count = count[1],
                                         .flow = ric_flow_options_default(),
                                         .grazing_tol = ric_orbit_options_default().grazing_tol * scale};
-  *s = shot_at(system, &problem);
-  shot_guess(s, q, v, NULL, x->orbit.period);
-  shot_solve(s);
+  *s = shooting_solution_of_system(system, &problem);
+  shooting_solution_guess(s, q, v, NULL, x->orbit.period);
+  shooting_solution_solve(s);
   return &s->orbit;
 }
 
 /* In closed form, of orbits with one impact at t = 0. @returns whether it is one */
-static bool closed_form(const solved *x, bool mirrored, ric_orbit *orbit) {
+static bool closed_form(const solved_orbit *x, bool mirrored, ric_orbit *orbit) {
   const ric_chain *chain = &x->scenario.chain;
   const ric_pattern *pattern = x->scenario.pattern;
   const ric_lattice lattice = ric_lattice_of_chain(chain);
@@ -156,7 +156,7 @@ static bool closed_form(const solved *x, bool mirrored, ric_orbit *orbit) {
   return true;
 }
 
-static void check_witness(const solved *x, double scale) {
+static void check_witness(const solved_orbit *x, double scale) {
   modal_motion motion = modal_motion_create(&x->scenario.chain);
   modal_motion_set(&motion, x->orbit.q, x->orbit.v);
   sampled_gap sampled = sampled_clearance(x, &motion, SAMPLES);
@@ -171,14 +171,14 @@ static void check_witness(const solved *x, double scale) {
 
 static int in_closed_form;
 
-static void check_clients(const solved *x) {
-  double scale = solved_scale(x);
+static void check_clients(const solved_orbit *x) {
+  double scale = solved_orbit_scale(x);
   check_witness(x, scale);
   for (int mirrored = 0; mirrored < 2; mirrored++) {
-    shot s;
+    shooting_solution s;
     ric_orbit closed;
     assert_same(&x->orbit, shoot(x, scale, mirrored, &s), scale, mirrored);
-    shot_clear(&s);
+    shooting_solution_clear(&s);
     if (!closed_form(x, mirrored, &closed))
       continue;
     assert_same(&x->orbit, &closed, scale, mirrored);
@@ -192,13 +192,13 @@ static void one_orbit_has_one_verdict_however_it_was_found(void **state) {
   double floors[MOST];
   for (size_t k = 0; k < sizeof examples / sizeof *examples; k++) {
     const example *e = &examples[k];
-    solved x = solve(e, floors);
+    solved_orbit x = solve(e, floors);
     print_message("%s: %s %s, clearance %.6g of %lld at %.6g\n", e->word, ric_outcome_name(x.orbit.outcome),
                   x.orbit.reason, x.orbit.clearance, x.orbit.clearance_particle, x.orbit.clearance_time);
     assert_int_equal(x.orbit.outcome, e->outcome);
     assert_memory_equal(x.orbit.reason, e->reason, strlen(e->reason));
     check_clients(&x);
-    solved_clear(&x);
+    solved_orbit_clear(&x);
   }
   assert_int_equal(in_closed_form, 16);
 }
@@ -212,8 +212,8 @@ static void gaps_within_the_tolerance_graze_for_all(void **state) {
     ric_outcome outcome;
   } cases[] = {{-3, RIC_INADMISSIBLE}, {-0.5, RIC_GRAZING}, {0, RIC_GRAZING}, {0.5, RIC_GRAZING}, {3, RIC_ADMISSIBLE}};
   double floors[MOST];
-  solved x = solve(&e, floors);
-  double clearance = x.orbit.clearance, zero = ric_orbit_options_default().grazing_tol * solved_scale(&x);
+  solved_orbit x = solve(&e, floors);
+  double clearance = x.orbit.clearance, zero = ric_orbit_options_default().grazing_tol * solved_orbit_scale(&x);
   size_t particle = (size_t)x.orbit.clearance_particle;
   for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
     floors[particle] = -1 + clearance - cases[k].share * zero;
@@ -225,7 +225,7 @@ static void gaps_within_the_tolerance_graze_for_all(void **state) {
       assert_non_null(strstr(x.orbit.reason, "touches its floor at t = "));
     check_clients(&x);
   }
-  solved_clear(&x);
+  solved_orbit_clear(&x);
 }
 
 /* An event-driven run confirms what is admissible, from the orbit alone. */
@@ -234,19 +234,19 @@ static void admissible_orbits_are_verified_however_they_were_found(void **state)
   double floors[MOST];
   size_t verified = 0;
   for (size_t k = 0; k < sizeof examples / sizeof *examples; k++) {
-    solved x = solve(&examples[k], floors);
-    shot s;
+    solved_orbit x = solve(&examples[k], floors);
+    shooting_solution s;
     ric_verification of_chain, of_shot;
     ric_error error;
-    shoot(&x, solved_scale(&x), k % 2, &s);
+    shoot(&x, solved_orbit_scale(&x), k % 2, &s);
     check(ric_orbit_verify(x.solver, &x.scenario.chain, &x.orbit, NULL, &of_chain, &error), &error);
     check(ric_shooting_verify(s.shooting, s.z, s.given, &s.orbit, NULL, &of_shot, &error), &error);
     assert_int_equal(of_chain.result, examples[k].outcome == RIC_ADMISSIBLE ? RIC_VERIFIED : RIC_NOT_RUN);
     assert_int_equal(of_shot.result, of_chain.result);
     assert_int_equal(of_shot.impacts, of_chain.impacts);
     verified += of_shot.result == RIC_VERIFIED;
-    shot_clear(&s);
-    solved_clear(&x);
+    shooting_solution_clear(&s);
+    solved_orbit_clear(&x);
   }
   assert_int_equal(verified, 10);
 }

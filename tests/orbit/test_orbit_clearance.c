@@ -8,24 +8,24 @@ enum { PATTERNS = 1000, SAMPLES = 512 };
 /* The witness, a sum over at most 24 modes, is itself rounded. */
 static const double witness_rounding = 1e-13;
 
-typedef void (*property)(solved *x, modal_motion *motion, double scale);
+typedef void (*property)(solved_orbit *x, modal_motion *motion, double scale);
 
 static void for_random_orbits(int count, property holds) {
   random_source source = {.state = 3};
   scenario_ranges ranges = {.most_particles = 24, .highest_gamma = 0.8, .shortest_period = 2, .longest_period = 6.5};
   for (int k = 0; k < count; k++) {
-    solved x = solved_by(RIC_METHOD_IMPULSE, scenario_random(&source, &ranges));
+    solved_orbit x = solve_orbit(RIC_METHOD_IMPULSE, scenario_random(&source, &ranges));
     modal_motion motion = modal_motion_create(&x.scenario.chain);
-    if (solved_has_state(&x)) {
+    if (solved_orbit_has_state(&x)) {
       modal_motion_set(&motion, x.orbit.q, x.orbit.v);
-      holds(&x, &motion, solved_scale(&x));
+      holds(&x, &motion, solved_orbit_scale(&x));
     }
     modal_motion_clear(&motion);
-    solved_clear(&x);
+    solved_orbit_clear(&x);
   }
 }
 
-static void check_clearance(solved *x, modal_motion *motion, double scale) {
+static void check_clearance(solved_orbit *x, modal_motion *motion, double scale) {
   double tolerance = (ric_orbit_options_default().clearance_tol + witness_rounding) * scale;
   sampled_gap sampled = sampled_clearance(x, motion, SAMPLES);
   if (sampled.gap == INFINITY) {
@@ -42,7 +42,7 @@ static void clearance_is_never_above_the_sampled_one(void **state) {
   for_random_orbits(PATTERNS, check_clearance);
 }
 
-static void check_attained(solved *x, modal_motion *motion, double scale) {
+static void check_attained(solved_orbit *x, modal_motion *motion, double scale) {
   if (x->orbit.clearance_particle < 0)
     return;
   size_t particle = (size_t)x->orbit.clearance_particle;
@@ -60,7 +60,7 @@ static void clearance_is_attained_where_and_when_it_is_reported(void **state) {
   for_random_orbits(PATTERNS, check_attained);
 }
 
-static void check_admissible(solved *x, modal_motion *motion, double scale) {
+static void check_admissible(solved_orbit *x, modal_motion *motion, double scale) {
   double zero = ric_orbit_options_default().grazing_tol * scale;
   if (x->orbit.outcome != RIC_ADMISSIBLE)
     return;
@@ -75,7 +75,7 @@ static void admissible_orbits_have_positive_impulses_and_no_sampled_violation(vo
   for_random_orbits(PATTERNS, check_admissible);
 }
 
-static void check_inadmissible(solved *x, modal_motion *motion, double scale) {
+static void check_inadmissible(solved_orbit *x, modal_motion *motion, double scale) {
   double least = INFINITY, zero = ric_orbit_options_default().grazing_tol * scale;
   if (x->orbit.outcome == RIC_INADMISSIBLE || x->orbit.outcome == RIC_GRAZING)
     return;
@@ -89,9 +89,9 @@ static void sampled_violations_are_never_called_admissible(void **state) {
   for_random_orbits(PATTERNS, check_inadmissible);
 }
 
-static void check_coarse(solved *x, modal_motion *motion, double scale) {
+static void check_coarse(solved_orbit *x, modal_motion *motion, double scale) {
   ric_orbit_options options = ric_orbit_options_default();
-  solved coarse = {.scenario = x->scenario};
+  solved_orbit coarse = {.scenario = x->scenario};
   (void)motion;
   options.clearance_tol = 1e-3;
   assert_int_equal(ric_orbit_solver_create(&options, &coarse.solver, NULL), RIC_OK);
@@ -99,7 +99,7 @@ static void check_coarse(solved *x, modal_motion *motion, double scale) {
   if (x->orbit.clearance_particle >= 0)
     assert_close(coarse.orbit.clearance, x->orbit.clearance, (1e-3 + 1e-12) * scale);
   coarse.scenario.pattern = NULL; /* belongs to x */
-  solved_clear(&coarse);
+  solved_orbit_clear(&coarse);
 }
 
 static void coarse_clearance_lies_within_its_tolerance(void **state) {

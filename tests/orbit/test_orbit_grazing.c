@@ -3,7 +3,7 @@
 
 #include "witness/modal_motion.h"
 #include "scenario/example1.h"
-#include "witness/solved.h"
+#include "witness/solved_orbit.h"
 
 static double alternating(size_t i) {
   return i % 2 == EXAMPLE1_IMPACT % 2 ? -1 : 1;
@@ -12,7 +12,7 @@ static double alternating(size_t i) {
 static void at_gamma_c_the_orbit_is_the_out_of_phase_mode_touching_the_floor(void **state) {
   (void)state;
   ric_orbit_options options = ric_orbit_options_default();
-  solved x = solved_by(RIC_METHOD_IMPULSE, example1_at(7.0 / 36));
+  solved_orbit x = solve_orbit(RIC_METHOD_IMPULSE, example1_at(7.0 / 36));
   assert_int_equal(x.orbit.outcome, RIC_GRAZING);
   assert_int_equal(x.orbit.mode, 15);
   assert_int_equal(x.orbit.harmonic, 1);
@@ -27,13 +27,13 @@ static void at_gamma_c_the_orbit_is_the_out_of_phase_mode_touching_the_floor(voi
   }
   double energy = 0.5 * EXAMPLE1_PARTICLES * pow(4.0 / 3, 2); /* n omega^2 / 2 with omega = 2 pi / T = 4/3 */
   assert_close(x.orbit.energy, energy, 1e-9);
-  solved_clear(&x);
+  solved_orbit_clear(&x);
 }
 
 static double impulse_at(double gamma) {
-  solved x = solved_by(RIC_METHOD_IMPULSE, example1_at(gamma));
+  solved_orbit x = solve_orbit(RIC_METHOD_IMPULSE, example1_at(gamma));
   double impulse = x.orbit.impulse[0];
-  solved_clear(&x);
+  solved_orbit_clear(&x);
   return impulse;
 }
 
@@ -54,30 +54,30 @@ static void impulses_vanish_linearly_towards_gamma_c(void **state) {
 
 static void orbits_tend_to_the_linear_mode_from_both_sides(void **state) {
   (void)state;
-  solved limit = solved_by(RIC_METHOD_IMPULSE, example1_at(7.0 / 36));
+  solved_orbit limit = solve_orbit(RIC_METHOD_IMPULSE, example1_at(7.0 / 36));
   for (int side = -1; side <= 1; side += 2) {
     double previous = 0;
     for (int k = 6; k <= 8; k++) {
-      solved x = solved_by(RIC_METHOD_IMPULSE, example1_at(7.0 / 36 + side * pow(10, -k)));
+      solved_orbit x = solve_orbit(RIC_METHOD_IMPULSE, example1_at(7.0 / 36 + side * pow(10, -k)));
       double distance = state_difference(&x.orbit, &limit.orbit);
       if (previous > 0)
         assert_close(log10(previous / distance), 1, 0.01);
       previous = distance;
-      solved_clear(&x);
+      solved_orbit_clear(&x);
     }
   }
-  solved_clear(&limit);
+  solved_orbit_clear(&limit);
 }
 
 static void method_of_reference_reaches_the_limit_too(void **state) {
   (void)state;
-  solved impulse = solved_by(RIC_METHOD_IMPULSE, example1_at(7.0 / 36));
-  solved dense = solved_by(RIC_METHOD_DENSE, example1_at(7.0 / 36));
+  solved_orbit impulse = solve_orbit(RIC_METHOD_IMPULSE, example1_at(7.0 / 36));
+  solved_orbit dense = solve_orbit(RIC_METHOD_DENSE, example1_at(7.0 / 36));
   assert_int_equal(dense.orbit.outcome, RIC_GRAZING);
   assert_int_equal(dense.orbit.mode, 15);
-  assert_true(state_difference(&impulse.orbit, &dense.orbit) <= agreement(&dense));
-  solved_clear(&impulse);
-  solved_clear(&dense);
+  assert_true(state_difference(&impulse.orbit, &dense.orbit) <= method_tolerance(&dense));
+  solved_orbit_clear(&impulse);
+  solved_orbit_clear(&dense);
 }
 
 static void later_resonances_of_the_ring_graze_too(void **state) {
@@ -90,14 +90,14 @@ static void later_resonances_of_the_ring_graze_too(void **state) {
   assert_true(count > 10 && count <= 64);
   assert_close(list[1].parameter, 0.196592, 5e-7);
   for (size_t k = 0; k < count; k++) {
-    solved x = solved_by(RIC_METHOD_IMPULSE, example1_at(list[k].parameter));
+    solved_orbit x = solve_orbit(RIC_METHOD_IMPULSE, example1_at(list[k].parameter));
     size_t partner = (EXAMPLE1_PARTICLES - list[k].mode) % EXAMPLE1_PARTICLES;
     assert_int_equal(x.orbit.outcome, RIC_GRAZING);
     assert_true((size_t)x.orbit.mode == list[k].mode || (size_t)x.orbit.mode == partner);
     assert_int_equal(x.orbit.harmonic, list[k].harmonic);
-    assert_close(impulse_of(&x, EXAMPLE1_IMPACT), 0, ric_orbit_options_default().grazing_tol * solved_scale(&x));
+    assert_close(impulse_of(&x, EXAMPLE1_IMPACT), 0, ric_orbit_options_default().grazing_tol * solved_orbit_scale(&x));
     assert_close(x.orbit.q[EXAMPLE1_IMPACT], -1, 1e-12);
-    solved_clear(&x);
+    solved_orbit_clear(&x);
   }
 }
 
@@ -112,9 +112,9 @@ static void check_mode_orbit(size_t n, ric_ends ends, size_t particle, size_t mo
     chain.gamma = list[k].parameter;
     if (list[k].mode != mode || fabs(ric_chain_mode_shape(&chain, mode, particle)) < 1e-3)
       continue;
-    solved x = solved_by(RIC_METHOD_IMPULSE, scenario_single(n, ends, chain.gamma, period, particle));
+    solved_orbit x = solve_orbit(RIC_METHOD_IMPULSE, scenario_single(n, ends, chain.gamma, period, particle));
     double amplitude = -1 / ric_chain_mode_shape(&chain, mode, particle);
-    double sign = list[k].harmonic % 2 == 1 ? -1 : 1, tolerance = 1e-10 * solved_scale(&x);
+    double sign = list[k].harmonic % 2 == 1 ? -1 : 1, tolerance = 1e-10 * solved_orbit_scale(&x);
     assert_int_equal(x.orbit.outcome == RIC_GRAZING || x.orbit.outcome == RIC_INADMISSIBLE, 1);
     for (size_t i = 0; i < n; i++) {
       double q = amplitude * ric_chain_mode_shape(&chain, mode, i);
@@ -122,7 +122,7 @@ static void check_mode_orbit(size_t n, ric_ends ends, size_t particle, size_t mo
       assert_close(x.orbit.q_half[i], sign * q, tolerance);
       assert_close(x.orbit.v[i], 0, tolerance);
     }
-    solved_clear(&x);
+    solved_orbit_clear(&x);
   }
 }
 
@@ -140,7 +140,7 @@ static void uncoupled_particles_at_their_own_period_graze(void **state) {
   const double period = 6.28318530717958647692;
   for (int ends = RIC_ENDS_PERIODIC; ends <= RIC_ENDS_FREE; ends++)
     for (size_t n = 1; n <= 5; n++) {
-      solved x = solved_by(RIC_METHOD_IMPULSE, scenario_middle(n, (ric_ends)ends, 0, period));
+      solved_orbit x = solve_orbit(RIC_METHOD_IMPULSE, scenario_middle(n, (ric_ends)ends, 0, period));
       assert_int_equal(x.orbit.outcome, RIC_GRAZING);
       assert_int_equal(x.orbit.harmonic, 1);
       assert_close(x.orbit.impulse[0], 0, 1e-10);
@@ -149,7 +149,7 @@ static void uncoupled_particles_at_their_own_period_graze(void **state) {
       for (size_t i = 0; i < n; i++)
         if (i != n / 2)
           assert_close(x.orbit.q[i], 0, 1e-10);
-      solved_clear(&x);
+      solved_orbit_clear(&x);
     }
 }
 

@@ -2,15 +2,15 @@
 #include "support.h"
 
 #include "scenario/example1.h"
-#include "witness/solved.h"
+#include "witness/solved_orbit.h"
 
 enum { PATTERNS = 3000 };
 
 /* Solves a scenario by both methods; returns their difference over the bound, infinite when they disagree about the
  * outcome, -1 for a singular outcome of both. */
 static double compare_methods(scenario s, scenario copy) {
-  solved impulse = solved_by(RIC_METHOD_IMPULSE, s), dense = solved_by(RIC_METHOD_DENSE, copy);
-  double ratio = state_difference(&impulse.orbit, &dense.orbit) / agreement(&dense);
+  solved_orbit impulse = solve_orbit(RIC_METHOD_IMPULSE, s), dense = solve_orbit(RIC_METHOD_DENSE, copy);
+  double ratio = state_difference(&impulse.orbit, &dense.orbit) / method_tolerance(&dense);
   if (dense.orbit.outcome != impulse.orbit.outcome)
     ratio = INFINITY;
   else if (dense.orbit.outcome == RIC_SINGULAR)
@@ -19,8 +19,8 @@ static double compare_methods(scenario s, scenario copy) {
     print_error("n = %zu, ends %d, gamma = %.17g, T = %.17g: %.3g of the bound, condition %.3g, %s and %s\n",
                 s.chain.particles, (int)s.chain.ends, s.chain.gamma, s.period, ratio, dense.orbit.condition,
                 ric_outcome_name(impulse.orbit.outcome), ric_outcome_name(dense.orbit.outcome));
-  solved_clear(&impulse);
-  solved_clear(&dense);
+  solved_orbit_clear(&impulse);
+  solved_orbit_clear(&dense);
   return ratio;
 }
 
@@ -78,17 +78,18 @@ static double compare_next_to(scenario *s, double resonance) {
   double worst = 0;
   for (int k = 2; k <= 13; k++) {
     s->chain.gamma = resonance * (1 + (k % 2 ? 1 : -1) * pow(10, -k));
-    solved impulse = solved_by(RIC_METHOD_IMPULSE, copy_of(s)), dense = solved_by(RIC_METHOD_DENSE, copy_of(s));
+    solved_orbit impulse = solve_orbit(RIC_METHOD_IMPULSE, copy_of(s)),
+                 dense = solve_orbit(RIC_METHOD_DENSE, copy_of(s));
     if (!is_special(impulse.orbit.outcome) && !is_special(dense.orbit.outcome)) {
-      double ratio = state_difference(&impulse.orbit, &dense.orbit) / agreement(&dense);
+      double ratio = state_difference(&impulse.orbit, &dense.orbit) / method_tolerance(&dense);
       if (ratio > 1 && ratio > worst)
         print_error(
             "n = %zu, ends %d, gamma = %.17g, T = %.17g, 1e-%d from a resonance: %.3g of the bound, residual %.2g\n",
             s->chain.particles, (int)s->chain.ends, s->chain.gamma, s->period, k, ratio, impulse.orbit.residual);
       worst = fmax(worst, ratio);
     }
-    solved_clear(&impulse);
-    solved_clear(&dense);
+    solved_orbit_clear(&impulse);
+    solved_orbit_clear(&dense);
   }
   return worst;
 }
@@ -129,7 +130,7 @@ static double closed_form_rounding(double period) {
 
 static void compare_with_closed_form(ric_orbit_method method, ric_ends ends, double period) {
   enum { N = 9, TIMES = 40 };
-  solved x = solved_by(method, scenario_word("s.h.hs...", 1, ends, 0, period));
+  solved_orbit x = solve_orbit(method, scenario_word("s.h.hs...", 1, ends, 0, period));
   double times[TIMES], q[TIMES * N], v[TIMES * N];
   for (int a = 0; a < TIMES; a++)
     times[a] = period * a / TIMES;
@@ -140,7 +141,7 @@ static void compare_with_closed_form(ric_orbit_method method, ric_ends ends, dou
       assert_close(q[a * N + i], place, closed_form_rounding(period));
       assert_close(v[a * N + i], speed, closed_form_rounding(period));
     }
-  solved_clear(&x);
+  solved_orbit_clear(&x);
 }
 
 static void uncoupled_orbits_equal_the_closed_form(void **state) {
@@ -160,9 +161,9 @@ static void uncoupled_orbits_are_admissible_from_pi_to_two_pi_only(void **state)
   } cases[] = {{2, RIC_INADMISSIBLE}, {3.1, RIC_INADMISSIBLE}, {3.2, RIC_ADMISSIBLE},
                {5, RIC_ADMISSIBLE},   {6.28, RIC_ADMISSIBLE},  {6.29, RIC_INADMISSIBLE}};
   for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
-    solved x = solved_by(RIC_METHOD_IMPULSE, scenario_word("s..h.", 1, RIC_ENDS_PERIODIC, 0, cases[k].period));
+    solved_orbit x = solve_orbit(RIC_METHOD_IMPULSE, scenario_word("s..h.", 1, RIC_ENDS_PERIODIC, 0, cases[k].period));
     assert_int_equal(x.orbit.outcome, cases[k].outcome);
-    solved_clear(&x);
+    solved_orbit_clear(&x);
   }
 }
 
@@ -170,12 +171,12 @@ static void uncoupled_orbits_are_admissible_from_pi_to_two_pi_only(void **state)
 static void vanishing_coupling_is_the_limit_of_small_coupling(void **state) {
   (void)state;
   for (int ends = RIC_ENDS_PERIODIC; ends <= RIC_ENDS_FREE; ends++) {
-    solved none = solved_by(RIC_METHOD_IMPULSE, scenario_word("s.h..s.", 1, (ric_ends)ends, 0, 5));
-    solved tiny = solved_by(RIC_METHOD_IMPULSE, scenario_word("s.h..s.", 1, (ric_ends)ends, 1e-13, 5));
+    solved_orbit none = solve_orbit(RIC_METHOD_IMPULSE, scenario_word("s.h..s.", 1, (ric_ends)ends, 0, 5));
+    solved_orbit tiny = solve_orbit(RIC_METHOD_IMPULSE, scenario_word("s.h..s.", 1, (ric_ends)ends, 1e-13, 5));
     assert_true(state_difference(&none.orbit, &tiny.orbit) <= 1e-11);
     assert_int_equal(none.orbit.outcome, tiny.orbit.outcome);
-    solved_clear(&none);
-    solved_clear(&tiny);
+    solved_orbit_clear(&none);
+    solved_orbit_clear(&tiny);
   }
 }
 

@@ -2,7 +2,7 @@
 #include "support.h"
 
 #include "witness/modal_motion.h"
-#include "witness/solved.h"
+#include "witness/solved_orbit.h"
 
 enum { MOST = 24, ORBITS = 200 };
 
@@ -10,31 +10,31 @@ enum { MOST = 24, ORBITS = 200 };
  * amplitude. */
 static const double rounding = 1e-12;
 
-typedef void (*property)(solved *x, modal_motion *motion, double amplitude);
+typedef void (*property)(solved_orbit *x, modal_motion *motion, double amplitude);
 
 /* Holds a property against random orbits. `motion` starts from the orbit's state at t = 0+. */
 static void for_random_orbits(property holds) {
   random_source source = {.state = 2};
   scenario_ranges ranges = {.most_particles = MOST, .highest_gamma = 1.5, .shortest_period = 0.5, .longest_period = 7};
   for (int k = 0; k < ORBITS; k++) {
-    solved x = solved_by(RIC_METHOD_IMPULSE, scenario_random(&source, &ranges));
+    solved_orbit x = solve_orbit(RIC_METHOD_IMPULSE, scenario_random(&source, &ranges));
     modal_motion motion = modal_motion_create(&x.scenario.chain);
-    if (solved_has_state(&x)) {
+    if (solved_orbit_has_state(&x)) {
       modal_motion_set(&motion, x.orbit.q, x.orbit.v);
       holds(&x, &motion, modal_motion_bound(&motion, 1));
     }
     modal_motion_clear(&motion);
-    solved_clear(&x);
+    solved_orbit_clear(&x);
   }
 }
 
-static void states_at(solved *x, const double *times, size_t count, double *q, double *v) {
+static void states_at(solved_orbit *x, const double *times, size_t count, double *q, double *v) {
   ric_error error;
   if (ric_orbit_states(x->solver, &x->scenario.chain, &x->orbit, times, count, q, v, &error) != RIC_OK)
     fail_msg("%s", error.message);
 }
 
-static void check_contacts(solved *x, modal_motion *motion, double amplitude) {
+static void check_contacts(solved_orbit *x, modal_motion *motion, double amplitude) {
   (void)motion;
   for (size_t i = 0; i < x->orbit.particles; i++) {
     ric_role role = ric_pattern_role(x->scenario.pattern, i);
@@ -54,7 +54,7 @@ static void contact_and_rest_conditions_hold_at_both_ends(void **state) {
   for_random_orbits(check_contacts);
 }
 
-static void reverse(const solved *x, ric_role role, double *v) {
+static void reverse(const solved_orbit *x, ric_role role, double *v) {
   for (size_t i = 0; i < x->orbit.particles; i++)
     if (ric_pattern_role(x->scenario.pattern, i) == role)
       v[i] = -v[i];
@@ -65,7 +65,7 @@ static void assert_states_close(const double *a, const double *b, size_t n, doub
     assert_close(a[i], b[i], tolerance);
 }
 
-static void check_closing(solved *x, modal_motion *motion, double amplitude) {
+static void check_closing(solved_orbit *x, modal_motion *motion, double amplitude) {
   size_t n = x->orbit.particles;
   double q[MOST], v[MOST];
   modal_motion_state(motion, x->orbit.period / 2, q, v);
@@ -84,7 +84,7 @@ static void orbit_closes_after_free_motion_and_reversals(void **state) {
   for_random_orbits(check_closing);
 }
 
-static void check_states(solved *x, modal_motion *motion, double amplitude) {
+static void check_states(solved_orbit *x, modal_motion *motion, double amplitude) {
   enum { TIMES = 33 };
   size_t n = x->orbit.particles;
   double times[TIMES], q[TIMES * MOST], v[TIMES * MOST], exact_q[MOST], exact_v[MOST], half = x->orbit.period / 2;
@@ -111,7 +111,7 @@ static void states_follow_the_modes_over_the_whole_period(void **state) {
 
 /* Fourth-order differences with step h: the truncation error is h^4 / 90 of the sixth derivative and h^4 / 30 of the
  * fifth, rounding is 64 / 12 units of the amplitude over h^2. */
-static void check_equation_of_motion(solved *x, modal_motion *motion, double amplitude) {
+static void check_equation_of_motion(solved_orbit *x, modal_motion *motion, double amplitude) {
   enum { POINTS = 5 };
   const double h = 0.004;
   size_t n = x->orbit.particles;
@@ -138,7 +138,7 @@ static void differences_of_states_satisfy_the_equation_of_motion(void **state) {
   for_random_orbits(check_equation_of_motion);
 }
 
-static void check_energy(solved *x, modal_motion *motion, double amplitude) {
+static void check_energy(solved_orbit *x, modal_motion *motion, double amplitude) {
   (void)motion, (void)amplitude;
   enum { TIMES = 16 };
   size_t n = x->orbit.particles;
@@ -157,7 +157,7 @@ static void energy_is_constant_along_the_orbit(void **state) {
 }
 
 /* Velocities of an impacting particle just before and at its impact. */
-static void check_jump(solved *x, modal_motion *motion, double amplitude) {
+static void check_jump(solved_orbit *x, modal_motion *motion, double amplitude) {
   (void)motion;
   size_t n = x->orbit.particles;
   double at[2] = {0, x->orbit.period / 2}, before[2] = {nextafter(x->orbit.period, 0), nextafter(at[1], 0)};
@@ -181,7 +181,7 @@ static void velocities_are_reversed_and_jump_by_the_impulses(void **state) {
   for_random_orbits(check_jump);
 }
 
-static void check_periodicity(solved *x, modal_motion *motion, double amplitude) {
+static void check_periodicity(solved_orbit *x, modal_motion *motion, double amplitude) {
   (void)amplitude;
   size_t n = x->orbit.particles;
   double T = x->orbit.period, t = 0.3 * T, q[5 * MOST], v[5 * MOST];
@@ -199,7 +199,7 @@ static void states_repeat_with_the_period_at_any_time(void **state) {
   for_random_orbits(check_periodicity);
 }
 
-static void check_evenness(solved *x, modal_motion *motion, double amplitude) {
+static void check_evenness(solved_orbit *x, modal_motion *motion, double amplitude) {
   (void)motion;
   size_t n = x->orbit.particles;
   double T = x->orbit.period, q[4 * MOST], v[4 * MOST];
@@ -218,7 +218,7 @@ static void orbits_are_even_about_both_impact_times(void **state) {
   for_random_orbits(check_evenness);
 }
 
-static void check_residual(solved *x, modal_motion *motion, double amplitude) {
+static void check_residual(solved_orbit *x, modal_motion *motion, double amplitude) {
   (void)motion;
   assert_true(x->orbit.residual >= 0 && x->orbit.residual <= rounding * amplitude);
 }
@@ -230,12 +230,12 @@ static void residual_is_rounding(void **state) {
 
 static void velocities_may_be_left_out(void **state) {
   (void)state;
-  solved x = solved_by(RIC_METHOD_IMPULSE, scenario_middle(7, RIC_ENDS_FREE, 0.1, 5));
+  solved_orbit x = solve_orbit(RIC_METHOD_IMPULSE, scenario_middle(7, RIC_ENDS_FREE, 0.1, 5));
   double times[2] = {0.4, 4}, q[14], only[14], v[14];
   states_at(&x, times, 2, q, v);
   states_at(&x, times, 2, only, NULL);
   assert_memory_equal(q, only, sizeof q);
-  solved_clear(&x);
+  solved_orbit_clear(&x);
 }
 
 int main(void) {

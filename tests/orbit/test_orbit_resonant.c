@@ -2,7 +2,7 @@
 #include "support.h"
 
 #include "witness/modal_motion.h"
-#include "witness/solved.h"
+#include "witness/solved_orbit.h"
 
 enum { MOST = 13, HARMONICS = 3 };
 
@@ -22,23 +22,24 @@ static double resonant_gamma(hidden h) {
   return (frequency * frequency - 1) / (4 * s * s);
 }
 
-static solved with_hidden_mode(ric_orbit_method method, hidden h, double distance) {
-  return solved_by(method, scenario_middle(h.n, RIC_ENDS_FREE, resonant_gamma(h) + distance, periods[h.harmonic - 1]));
+static solved_orbit with_hidden_mode(ric_orbit_method method, hidden h, double distance) {
+  return solve_orbit(method,
+                     scenario_middle(h.n, RIC_ENDS_FREE, resonant_gamma(h) + distance, periods[h.harmonic - 1]));
 }
 
-static void for_all_hidden_modes(void (*holds)(hidden h, solved *x)) {
+static void for_all_hidden_modes(void (*holds)(hidden h, solved_orbit *x)) {
   for (size_t n = 3; n <= MOST; n += 2)
     for (size_t mode = 1; mode < n; mode += 2)
       for (unsigned harmonic = 1; harmonic <= HARMONICS; harmonic++) {
         hidden h = {.n = n, .mode = mode, .harmonic = harmonic};
-        solved x = with_hidden_mode(RIC_METHOD_IMPULSE, h, 0);
+        solved_orbit x = with_hidden_mode(RIC_METHOD_IMPULSE, h, 0);
         holds(h, &x);
-        solved_clear(&x);
+        solved_orbit_clear(&x);
       }
 }
 
-static void check_report(hidden h, solved *x) {
-  solved dense = with_hidden_mode(RIC_METHOD_DENSE, h, 0);
+static void check_report(hidden h, solved_orbit *x) {
+  solved_orbit dense = with_hidden_mode(RIC_METHOD_DENSE, h, 0);
   const ric_orbit *orbits[] = {&x->orbit, &dense.orbit};
   for (int k = 0; k < 2; k++) {
     assert_int_equal(orbits[k]->outcome, RIC_RESONANT);
@@ -46,7 +47,7 @@ static void check_report(hidden h, solved *x) {
     assert_int_equal(orbits[k]->harmonic, h.harmonic);
     assert_true(strlen(orbits[k]->reason) > 0);
   }
-  solved_clear(&dense);
+  solved_orbit_clear(&dense);
 }
 
 static void hidden_mode_at_resonance_is_reported_by_both_methods(void **state) {
@@ -54,14 +55,14 @@ static void hidden_mode_at_resonance_is_reported_by_both_methods(void **state) {
   for_all_hidden_modes(check_report);
 }
 
-static void reverse(const solved *x, ric_role role, double *v) {
+static void reverse(const solved_orbit *x, ric_role role, double *v) {
   for (size_t i = 0; i < x->orbit.particles; i++)
     if (ric_pattern_role(x->scenario.pattern, i) == role)
       v[i] = -v[i];
 }
 
 /* Whether a state at t = 0+ returns after free motion and the reversals of the pattern, with its contacts. */
-static void assert_periodic(const solved *x, const double *q, const double *v) {
+static void assert_periodic(const solved_orbit *x, const double *q, const double *v) {
   size_t n = x->orbit.particles, middle = n / 2;
   double q_end[MOST], v_end[MOST];
   modal_motion motion = modal_motion_create(&x->scenario.chain);
@@ -77,7 +78,7 @@ static void assert_periodic(const solved *x, const double *q, const double *v) {
   modal_motion_clear(&motion);
 }
 
-static void check_any_amplitude(hidden h, solved *x) {
+static void check_any_amplitude(hidden h, solved_orbit *x) {
   for (int amplitude = -2; amplitude <= 2; amplitude++) {
     double q[MOST];
     for (size_t i = 0; i < h.n; i++)
@@ -91,11 +92,11 @@ static void any_amplitude_of_the_hidden_mode_solves_the_equations(void **state) 
   for_all_hidden_modes(check_any_amplitude);
 }
 
-static void check_no_amplitude(hidden h, solved *x) {
+static void check_no_amplitude(hidden h, solved_orbit *x) {
   double amplitude = 0;
   for (size_t i = 0; i < h.n; i++)
     amplitude += x->orbit.q[i] * ric_chain_mode_shape(&x->scenario.chain, h.mode, i);
-  assert_close(amplitude, 0, 1e-12 * fmax(1, solved_scale(x)) * (double)h.n);
+  assert_close(amplitude, 0, 1e-12 * fmax(1, solved_orbit_scale(x)) * (double)h.n);
 }
 
 static void the_orbit_given_has_none_of_the_hidden_mode(void **state) {
@@ -107,16 +108,17 @@ static void the_orbit_given_has_none_of_the_hidden_mode(void **state) {
 static void the_orbit_is_continuous_across_the_resonance(void **state) {
   (void)state;
   const hidden h = {.n = 7, .mode = 5, .harmonic = 1};
-  solved at = with_hidden_mode(RIC_METHOD_IMPULSE, h, 0);
-  solved left = with_hidden_mode(RIC_METHOD_IMPULSE, h, -1e-7);
-  solved right = with_hidden_mode(RIC_METHOD_IMPULSE, h, 1e-7);
+  solved_orbit at = with_hidden_mode(RIC_METHOD_IMPULSE, h, 0);
+  solved_orbit left = with_hidden_mode(RIC_METHOD_IMPULSE, h, -1e-7);
+  solved_orbit right = with_hidden_mode(RIC_METHOD_IMPULSE, h, 1e-7);
   double across = state_difference(&left.orbit, &right.orbit);
   assert_true(left.orbit.outcome != RIC_RESONANT && right.orbit.outcome != RIC_RESONANT);
   for (size_t i = 0; i < h.n; i++)
-    assert_close(at.orbit.q[i], (left.orbit.q[i] + right.orbit.q[i]) / 2, across * 1e-3 + 1e-12 * solved_scale(&at));
-  solved_clear(&at);
-  solved_clear(&left);
-  solved_clear(&right);
+    assert_close(at.orbit.q[i], (left.orbit.q[i] + right.orbit.q[i]) / 2,
+                 across * 1e-3 + 1e-12 * solved_orbit_scale(&at));
+  solved_orbit_clear(&at);
+  solved_orbit_clear(&left);
+  solved_orbit_clear(&right);
 }
 
 /* On a ring of 12 with an impact of every third particle, modes that do not repeat with the pattern are at resonance
@@ -132,14 +134,16 @@ static void resonances_that_the_contacts_see_leave_a_periodic_pattern_alone(void
   for (size_t k = 0; k < count; k++) {
     if (list[k].mode % 2 == 0) /* in the small ring, or hidden */
       continue;
-    solved full = solved_by(RIC_METHOD_DENSE, scenario_word("s..", 4, RIC_ENDS_PERIODIC, list[k].parameter, period));
-    solved cell = solved_by(RIC_METHOD_IMPULSE, scenario_word("s..", 4, RIC_ENDS_PERIODIC, list[k].parameter, period));
+    solved_orbit full =
+        solve_orbit(RIC_METHOD_DENSE, scenario_word("s..", 4, RIC_ENDS_PERIODIC, list[k].parameter, period));
+    solved_orbit cell =
+        solve_orbit(RIC_METHOD_IMPULSE, scenario_word("s..", 4, RIC_ENDS_PERIODIC, list[k].parameter, period));
     assert_true(cell.orbit.outcome != RIC_RESONANT && cell.orbit.outcome != RIC_GRAZING);
     assert_int_equal(full.orbit.outcome, cell.orbit.outcome);
-    assert_true(state_difference(&full.orbit, &cell.orbit) <= agreement(&full));
+    assert_true(state_difference(&full.orbit, &cell.orbit) <= method_tolerance(&full));
     seen++;
-    solved_clear(&full);
-    solved_clear(&cell);
+    solved_orbit_clear(&full);
+    solved_orbit_clear(&cell);
   }
   assert_true(seen > 0);
 }
@@ -154,10 +158,11 @@ static void one_mode_of_a_pair_hides_from_a_single_impact_on_a_ring(void **state
   assert_int_equal(ric_chain_resonances(&ring, RIC_ALONG_GAMMA, period, 0, 2, list, 64, &count, NULL), RIC_OK);
   assert_true(count > 0);
   for (size_t k = 0; k < count; k++) {
-    solved x = solved_by(RIC_METHOD_IMPULSE, scenario_single(9, RIC_ENDS_PERIODIC, list[k].parameter, period, 4));
+    solved_orbit x =
+        solve_orbit(RIC_METHOD_IMPULSE, scenario_single(9, RIC_ENDS_PERIODIC, list[k].parameter, period, 4));
     assert_int_equal(x.orbit.outcome, RIC_GRAZING);
     assert_periodic(&x, x.orbit.q, x.orbit.v);
-    solved_clear(&x);
+    solved_orbit_clear(&x);
   }
 }
 

@@ -3,42 +3,42 @@
 #include "support.h"
 
 #include "scenario/example1.h"
-#include "witness/solved.h"
+#include "witness/solved_orbit.h"
 
 static void speed_after_impact_meets_the_reference(void **state) {
   (void)state;
   const struct { double gamma, speed; } values[] = {{0.05, 0.823195058650}, {0.187, 0.178528674603}};
   for (int method = RIC_METHOD_IMPULSE; method <= RIC_METHOD_DENSE; method++)
     for (int k = 0; k < 2; k++) {
-      solved x = solved_by((ric_orbit_method)method, example1_at(values[k].gamma));
+      solved_orbit x = solve_orbit((ric_orbit_method)method, example1_at(values[k].gamma));
       assert_close(x.orbit.v[EXAMPLE1_IMPACT], values[k].speed, 1e-12);
       assert_close(x.orbit.impulse[0], 2 * values[k].speed, 2e-12);
-      solved_clear(&x);
+      solved_orbit_clear(&x);
     }
 }
 
 static void energy_meets_the_reference(void **state) {
   (void)state;
-  solved x = solved_by(RIC_METHOD_IMPULSE, example1_at(0.149153131912));
+  solved_orbit x = solve_orbit(RIC_METHOD_IMPULSE, example1_at(0.149153131912));
   assert_close(x.orbit.energy, 1.067138152, 1e-9);
-  solved_clear(&x);
+  solved_orbit_clear(&x);
 }
 
 static void all_orbits_of_the_table_are_admissible(void **state) {
   (void)state;
   for (size_t row = 0; row < EXAMPLE1_TABLE; row++) {
-    solved x = solved_by(RIC_METHOD_IMPULSE, example1_at(example1_gamma(row)));
+    solved_orbit x = solve_orbit(RIC_METHOD_IMPULSE, example1_at(example1_gamma(row)));
     assert_int_equal(x.orbit.outcome, RIC_ADMISSIBLE);
     assert_true(x.orbit.clearance > 0 && x.orbit.impulse[0] > 0);
     assert_true(x.orbit.condition >= 1 && x.orbit.condition < 100);
-    solved_clear(&x);
+    solved_orbit_clear(&x);
   }
 }
 
 /* The infinite chain is reached long before: at gamma = 0.1 the rate is 1.7 per particle. */
 static void check_large(size_t n, ric_ends ends) {
-  solved large = solved_by(RIC_METHOD_IMPULSE, scenario_middle(n, ends, 0.1, example1_period()));
-  solved small = solved_by(RIC_METHOD_IMPULSE, scenario_middle(61, ends, 0.1, example1_period()));
+  solved_orbit large = solve_orbit(RIC_METHOD_IMPULSE, scenario_middle(n, ends, 0.1, example1_period()));
+  solved_orbit small = solve_orbit(RIC_METHOD_IMPULSE, scenario_middle(61, ends, 0.1, example1_period()));
   assert_int_equal(large.orbit.outcome, RIC_ADMISSIBLE);
   assert_close(large.orbit.impulse[0], small.orbit.impulse[0], 1e-12);
   assert_close(large.orbit.energy, small.orbit.energy, 1e-12);
@@ -46,8 +46,8 @@ static void check_large(size_t n, ric_ends ends) {
   assert_true(large.orbit.residual <= 1e-12);
   for (size_t i = 0; i < 61; i++)
     assert_close(large.orbit.q[n / 2 - 30 + i], small.orbit.q[i], 1e-12);
-  solved_clear(&large);
-  solved_clear(&small);
+  solved_orbit_clear(&large);
+  solved_orbit_clear(&small);
 }
 
 static void chains_of_a_hundred_thousand_are_solved_and_certified(void **state) {

@@ -2,7 +2,7 @@
  * over the modes of the whole chain, its sign by elimination, a fine grid between neighbouring resonances. */
 #include "support.h"
 
-#include "witness/solved.h"
+#include "witness/solved_orbit.h"
 
 enum { MOST_IMPACTS = 4, MOST_POINTS = 256, GRID = 3000 };
 
@@ -153,7 +153,7 @@ static void impulses_change_sign_through_infinity_there(void **state) {
   double points[MOST_POINTS];
   size_t count;
   ric_error error;
-  solved x = solved_by(RIC_METHOD_IMPULSE, scenario_single(30, RIC_ENDS_PERIODIC, 0, 1.5 * pi, 15));
+  solved_orbit x = solve_orbit(RIC_METHOD_IMPULSE, scenario_single(30, RIC_ENDS_PERIODIC, 0, 1.5 * pi, 15));
   assert_int_equal(ric_orbit_singular_points(x.solver, &x.scenario.chain, x.scenario.pattern, RIC_ALONG_GAMMA, 1.5 * pi,
                                              0.15, 1.2, points, MOST_POINTS, &count, &error),
                    RIC_OK);
@@ -170,14 +170,14 @@ static void impulses_change_sign_through_infinity_there(void **state) {
     assert_true(fabs(p[0]) > 1e3 && fabs(p[1]) > 1e3);
     assert_true(k == 0 || points[k] > points[k - 1]);
   }
-  solved_clear(&x);
+  solved_orbit_clear(&x);
 }
 
 static void count_goes_on_beyond_the_capacity(void **state) {
   (void)state;
   double points[3] = {0, 0, -1}, all[MOST_POINTS];
   size_t few, many;
-  solved x = solved_by(RIC_METHOD_IMPULSE, scenario_single(30, RIC_ENDS_PERIODIC, 0, 1.5 * pi, 15));
+  solved_orbit x = solve_orbit(RIC_METHOD_IMPULSE, scenario_single(30, RIC_ENDS_PERIODIC, 0, 1.5 * pi, 15));
   const scenario *s = &x.scenario;
   assert_int_equal(ric_orbit_singular_points(x.solver, &s->chain, s->pattern, RIC_ALONG_GAMMA, s->period, 0.1, 1, all,
                                              MOST_POINTS, &many, NULL),
@@ -189,7 +189,7 @@ static void count_goes_on_beyond_the_capacity(void **state) {
   assert_close(points[0], all[0], 0);
   assert_close(points[1], all[1], 0);
   assert_close(points[2], -1, 0);
-  solved_clear(&x);
+  solved_orbit_clear(&x);
 }
 
 /* On the unit cell: every third particle of a ring of 12 has the points of a ring of 3. */
@@ -199,8 +199,8 @@ static void periodic_patterns_have_the_points_of_their_cell(void **state) {
   for (size_t w = 0; w < sizeof words / sizeof *words; w++) {
     double ring[MOST_POINTS], cell[MOST_POINTS];
     size_t on_ring, on_cell;
-    solved large = solved_by(RIC_METHOD_IMPULSE, scenario_word(words[w], 8, RIC_ENDS_PERIODIC, 0.1, 5));
-    solved small = solved_by(RIC_METHOD_IMPULSE, scenario_word(words[w], 4, RIC_ENDS_PERIODIC, 0.1, 5));
+    solved_orbit large = solve_orbit(RIC_METHOD_IMPULSE, scenario_word(words[w], 8, RIC_ENDS_PERIODIC, 0.1, 5));
+    solved_orbit small = solve_orbit(RIC_METHOD_IMPULSE, scenario_word(words[w], 4, RIC_ENDS_PERIODIC, 0.1, 5));
     ric_orbit_singular_points(large.solver, &large.scenario.chain, large.scenario.pattern, RIC_ALONG_GAMMA, 5, 0, 4,
                               ring, MOST_POINTS, &on_ring, NULL);
     ric_orbit_singular_points(small.solver, &small.scenario.chain, small.scenario.pattern, RIC_ALONG_GAMMA, 5, 0, 4,
@@ -214,18 +214,18 @@ static void periodic_patterns_have_the_points_of_their_cell(void **state) {
       assert_true(large.orbit.condition > ric_orbit_options_default().singular_condition);
       assert_true(large.orbit.outcome == RIC_SINGULAR || large.orbit.outcome == RIC_RESONANT);
     }
-    solved_clear(&large);
-    solved_clear(&small);
+    solved_orbit_clear(&large);
+    solved_orbit_clear(&small);
   }
 }
 
 static ric_status ask(double period, double low, double high, ric_along along, ric_error *error) {
-  solved x = solved_by(RIC_METHOD_IMPULSE, scenario_single(5, RIC_ENDS_PERIODIC, 0.1, 5, 2));
+  solved_orbit x = solve_orbit(RIC_METHOD_IMPULSE, scenario_single(5, RIC_ENDS_PERIODIC, 0.1, 5, 2));
   double points[MOST_POINTS];
   size_t count;
   ric_status status = ric_orbit_singular_points(x.solver, &x.scenario.chain, x.scenario.pattern, along, period, low,
                                                 high, points, MOST_POINTS, &count, error);
-  solved_clear(&x);
+  solved_orbit_clear(&x);
   return status;
 }
 

@@ -1,22 +1,23 @@
 /* Patterns that repeat in space are solved on their unit cell, with the result of the whole chain. */
 #include "support.h"
 
-#include "witness/solved.h"
+#include "witness/solved_orbit.h"
 
 static const double couplings[] = {0.02, 0.11, 0.4, 0.9};
 
 static void compare_word(const char *word, size_t times, ric_ends ends, double gamma, double period) {
-  solved cell = solved_by(RIC_METHOD_IMPULSE, scenario_word(word, times, ends, gamma, period));
-  solved whole = solved_by(RIC_METHOD_DENSE, scenario_word(word, times, ends, gamma, period));
+  solved_orbit cell = solve_orbit(RIC_METHOD_IMPULSE, scenario_word(word, times, ends, gamma, period));
+  solved_orbit whole = solve_orbit(RIC_METHOD_DENSE, scenario_word(word, times, ends, gamma, period));
   assert_int_equal(cell.orbit.outcome, whole.orbit.outcome);
-  if (solved_has_state(&whole)) {
-    assert_true(state_difference(&cell.orbit, &whole.orbit) <= agreement(&whole));
-    assert_close(cell.orbit.energy, whole.orbit.energy, 2 * sqrt(whole.orbit.energy * 40) * agreement(&whole));
+  if (solved_orbit_has_state(&whole)) {
+    assert_true(state_difference(&cell.orbit, &whole.orbit) <= method_tolerance(&whole));
+    assert_close(cell.orbit.energy, whole.orbit.energy, 2 * sqrt(whole.orbit.energy * 40) * method_tolerance(&whole));
     if (whole.orbit.clearance_particle >= 0)
-      assert_close(cell.orbit.clearance, whole.orbit.clearance, agreement(&whole) + 2e-12 * solved_scale(&whole));
+      assert_close(cell.orbit.clearance, whole.orbit.clearance,
+                   method_tolerance(&whole) + 2e-12 * solved_orbit_scale(&whole));
   }
-  solved_clear(&cell);
-  solved_clear(&whole);
+  solved_orbit_clear(&cell);
+  solved_orbit_clear(&whole);
 }
 
 static void compare_everywhere(const char *word, size_t times, ric_ends ends) {
@@ -57,15 +58,15 @@ static void in_phase_and_zigzag_motions_are_one_and_two_oscillators(void **state
   const double period = 5, gamma = 0.07, edge = sqrt(1 + 4 * gamma);
   double x = period / 2, y = edge * period / 2;
   double g = (cos(x) + 1) / (4 * sin(x)) + (cos(y) - 1) / (4 * edge * sin(y));
-  solved in_phase = solved_by(RIC_METHOD_IMPULSE, scenario_word("s", 10, RIC_ENDS_PERIODIC, gamma, period));
-  solved zigzag = solved_by(RIC_METHOD_IMPULSE, scenario_word("sh", 5, RIC_ENDS_PERIODIC, gamma, period));
+  solved_orbit in_phase = solve_orbit(RIC_METHOD_IMPULSE, scenario_word("s", 10, RIC_ENDS_PERIODIC, gamma, period));
+  solved_orbit zigzag = solve_orbit(RIC_METHOD_IMPULSE, scenario_word("sh", 5, RIC_ENDS_PERIODIC, gamma, period));
   for (size_t i = 0; i < 10; i++) {
     assert_close(in_phase.orbit.q_half[i], -1 / cos(x), 1e-13);
     assert_close(in_phase.orbit.impulse[i], -2 * tan(x), 1e-13);
     assert_close(zigzag.orbit.impulse[i], -1 / g, 1e-13);
   }
-  solved_clear(&in_phase);
-  solved_clear(&zigzag);
+  solved_orbit_clear(&in_phase);
+  solved_orbit_clear(&zigzag);
 }
 
 static double bytes_of(const char *word, size_t times, ric_ends ends) {
@@ -87,15 +88,15 @@ static void periodic_patterns_take_little_more_memory_than_their_orbit(void **st
 
 static void large_periodic_patterns_equal_small_ones(void **state) {
   (void)state;
-  solved large = solved_by(RIC_METHOD_IMPULSE, scenario_word("s.h..", 2000, RIC_ENDS_PERIODIC, 0.05, 5));
-  solved small = solved_by(RIC_METHOD_DENSE, scenario_word("s.h..", 3, RIC_ENDS_PERIODIC, 0.05, 5));
+  solved_orbit large = solve_orbit(RIC_METHOD_IMPULSE, scenario_word("s.h..", 2000, RIC_ENDS_PERIODIC, 0.05, 5));
+  solved_orbit small = solve_orbit(RIC_METHOD_DENSE, scenario_word("s.h..", 3, RIC_ENDS_PERIODIC, 0.05, 5));
   for (size_t i = 0; i < large.orbit.particles; i++) {
-    assert_close(large.orbit.q[i], small.orbit.q[i % 5], agreement(&small));
-    assert_close(large.orbit.v[i], small.orbit.v[i % 5], agreement(&small));
+    assert_close(large.orbit.q[i], small.orbit.q[i % 5], method_tolerance(&small));
+    assert_close(large.orbit.v[i], small.orbit.v[i % 5], method_tolerance(&small));
   }
   assert_close(large.orbit.clearance, small.orbit.clearance, 1e-11);
-  solved_clear(&large);
-  solved_clear(&small);
+  solved_orbit_clear(&large);
+  solved_orbit_clear(&small);
 }
 
 /* Floors that do not repeat with the pattern forbid the reduction. */
@@ -107,12 +108,12 @@ static void floors_that_do_not_repeat_are_not_reduced(void **state) {
       scenario s = scenario_word("s..", 3, (ric_ends)ends, gamma, 5),
                t = scenario_word("s..", 3, (ric_ends)ends, gamma, 5);
       s.chain.floors = t.chain.floors = floors;
-      solved impulse = solved_by(RIC_METHOD_IMPULSE, s), dense = solved_by(RIC_METHOD_DENSE, t);
-      assert_true(state_difference(&impulse.orbit, &dense.orbit) <= agreement(&dense));
+      solved_orbit impulse = solve_orbit(RIC_METHOD_IMPULSE, s), dense = solve_orbit(RIC_METHOD_DENSE, t);
+      assert_true(state_difference(&impulse.orbit, &dense.orbit) <= method_tolerance(&dense));
       assert_close(impulse.orbit.q[3], -0.8, 1e-13);
       assert_close(impulse.orbit.q[0], -1, 1e-13);
-      solved_clear(&impulse);
-      solved_clear(&dense);
+      solved_orbit_clear(&impulse);
+      solved_orbit_clear(&dense);
     }
 }
 
@@ -123,11 +124,11 @@ static void floors_that_repeat_are_reduced(void **state) {
            t = scenario_word("sh.", 3, RIC_ENDS_PERIODIC, 0.1, 5);
   s.chain.floors = t.chain.floors = floors;
   assert_true(ric_orbit_bytes(&s.chain, s.pattern, RIC_METHOD_IMPULSE) < bytes_of("sh...h...", 1, RIC_ENDS_PERIODIC));
-  solved impulse = solved_by(RIC_METHOD_IMPULSE, s), dense = solved_by(RIC_METHOD_DENSE, t);
-  assert_true(state_difference(&impulse.orbit, &dense.orbit) <= agreement(&dense));
+  solved_orbit impulse = solve_orbit(RIC_METHOD_IMPULSE, s), dense = solve_orbit(RIC_METHOD_DENSE, t);
+  assert_true(state_difference(&impulse.orbit, &dense.orbit) <= method_tolerance(&dense));
   assert_int_equal(impulse.orbit.outcome, dense.orbit.outcome);
-  solved_clear(&impulse);
-  solved_clear(&dense);
+  solved_orbit_clear(&impulse);
+  solved_orbit_clear(&dense);
 }
 
 /* Every pattern of up to four particles: where a class of equal particles has one member, nothing is gained or lost. */
@@ -140,13 +141,13 @@ static void uncoupled_chains_of_any_size_equal_the_dense_solution(void **state) 
         char word[5] = "";
         for (size_t i = 0, rest = code; i < n; i++, rest /= 3)
           word[i] = letters[rest % 3];
-        solved impulse = solved_by(RIC_METHOD_IMPULSE, scenario_word(word, 1, (ric_ends)ends, 0, 4.7));
-        solved dense = solved_by(RIC_METHOD_DENSE, scenario_word(word, 1, (ric_ends)ends, 0, 4.7));
+        solved_orbit impulse = solve_orbit(RIC_METHOD_IMPULSE, scenario_word(word, 1, (ric_ends)ends, 0, 4.7));
+        solved_orbit dense = solve_orbit(RIC_METHOD_DENSE, scenario_word(word, 1, (ric_ends)ends, 0, 4.7));
         assert_int_equal(impulse.orbit.outcome, RIC_ADMISSIBLE);
         assert_int_equal(dense.orbit.outcome, RIC_ADMISSIBLE);
-        assert_true(state_difference(&impulse.orbit, &dense.orbit) <= agreement(&dense));
-        solved_clear(&impulse);
-        solved_clear(&dense);
+        assert_true(state_difference(&impulse.orbit, &dense.orbit) <= method_tolerance(&dense));
+        solved_orbit_clear(&impulse);
+        solved_orbit_clear(&dense);
       }
 }
 

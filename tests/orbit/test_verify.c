@@ -1,10 +1,10 @@
 /* The verifier: closed-form orbits pass; orbits that are not what they promise do not. */
 #include "support.h"
 
-#include "witness/recorded.h"
-#include "witness/solved.h"
+#include "witness/recorded_run.h"
+#include "witness/solved_orbit.h"
 
-static ric_verification verify(const solved *x, const ric_verify_options *options) {
+static ric_verification verify(const solved_orbit *x, const ric_verify_options *options) {
   ric_verification v;
   ric_error error = {0};
   if (ric_orbit_verify(x->solver, &x->scenario.chain, &x->orbit, options, &v, &error) != RIC_OK)
@@ -13,7 +13,7 @@ static ric_verification verify(const solved *x, const ric_verify_options *option
 }
 
 /* Growth of a small difference over one period: the closure error is the error of a step times it. */
-static double growth_over_a_period(const solved *x) {
+static double growth_over_a_period(const solved_orbit *x) {
   const ric_chain *chain = &x->scenario.chain;
   size_t n = chain->particles;
   double quarter = x->orbit.period / 4, *q = calloc(2 * n, sizeof *q), *v = q + n;
@@ -37,14 +37,14 @@ static void random_admissible_orbits_pass(void **state) {
   size_t verified = 0, of_ends[3] = {0};
   double worst = 0;
   while (verified < 1000) {
-    solved x = solved_by(RIC_METHOD_IMPULSE, scenario_random(&source, &ranges));
+    solved_orbit x = solve_orbit(RIC_METHOD_IMPULSE, scenario_random(&source, &ranges));
     double least = INFINITY;
     for (size_t k = 0; k < x.orbit.impacts; k++)
       least = fmin(least, x.orbit.impulse[k]);
     /* impacts at least of this strength, gaps at least of this width: else a grazing contact may go either way */
     if (x.orbit.outcome == RIC_ADMISSIBLE && least > 1e-3 && !(x.orbit.clearance < 1e-6) && x.orbit.condition < 1e4) {
       ric_verification v = verify(&x, NULL);
-      double bound = 1e-13 * growth_over_a_period(&x) * (1 + solved_scale(&x)); /* rounding, grown for a period */
+      double bound = 1e-13 * growth_over_a_period(&x) * (1 + solved_orbit_scale(&x)); /* rounding, grown for a period */
       if (v.result != RIC_VERIFIED)
         fail_msg("orbit %zu: %s: %s", verified, ric_verification_name(v.result), v.reason);
       assert_int_equal(v.impacts, x.orbit.impacts);
@@ -55,19 +55,19 @@ static void random_admissible_orbits_pass(void **state) {
       of_ends[x.scenario.chain.ends]++;
       verified++;
     }
-    solved_clear(&x);
+    solved_orbit_clear(&x);
   }
   assert_true(of_ends[0] > 100 && of_ends[1] > 100 && of_ends[2] > 100);
   print_message("[ closure errors at most %.2g of the bound ]\n", worst);
 }
 
-static solved example(void) {
-  return solved_by(RIC_METHOD_IMPULSE, scenario_word("s...h...", 2, RIC_ENDS_PERIODIC, 0.1, 4.7));
+static solved_orbit example(void) {
+  return solve_orbit(RIC_METHOD_IMPULSE, scenario_word("s...h...", 2, RIC_ENDS_PERIODIC, 0.1, 4.7));
 }
 
 static void disturbed_orbit_does_not_close(void **state) {
   (void)state;
-  solved x = example();
+  solved_orbit x = example();
   assert_int_equal(verify(&x, NULL).result, RIC_VERIFIED);
   for (size_t i = 0; i < x.orbit.particles; i++)
     x.orbit.q[i] *= i == 2 ? 1 + 1e-5 : 1;
@@ -75,17 +75,17 @@ static void disturbed_orbit_does_not_close(void **state) {
   assert_true(v.result == RIC_NOT_CLOSED || v.result == RIC_IMPACT_EXTRA || v.result == RIC_IMPACT_MISSING);
   assert_true(v.closure_error > 1e-8);
   assert_true(strlen(v.reason) > 0);
-  solved_clear(&x);
+  solved_orbit_clear(&x);
 }
 
 static void inadmissible_orbits_are_not_run(void **state) {
   (void)state;
-  solved x = solved_by(RIC_METHOD_IMPULSE, scenario_word("s....h..", 1, RIC_ENDS_PERIODIC, 0.9, 5));
+  solved_orbit x = solve_orbit(RIC_METHOD_IMPULSE, scenario_word("s....h..", 1, RIC_ENDS_PERIODIC, 0.9, 5));
   assert_int_equal(x.orbit.outcome, RIC_INADMISSIBLE);
   ric_verification v = verify(&x, NULL);
   assert_int_equal(v.result, RIC_NOT_RUN);
   assert_true(isnan(v.closure_error));
-  solved_clear(&x);
+  solved_orbit_clear(&x);
 }
 
 /* A single mass bouncing on a floor at -0.5 from q = 1 on, against predicted impacts. */

@@ -2,8 +2,8 @@
  * ones in pieces; and what is refused. */
 #include "support.h"
 
-#include "witness/recorded.h"
-#include "witness/shot.h"
+#include "witness/recorded_run.h"
+#include "witness/shooting_solution.h"
 #include "witness/van_der_pol.h"
 
 static ric_system *two_masses(void) {
@@ -34,14 +34,15 @@ static void conservative_motions_are_the_even_ones(void **state) {
                                       .count = 1,
                                       .pieces = pieces,
                                       .flow = ric_flow_options_default()};
-      shot even = shot_at(two_masses(), &a), free = shot_at(two_masses(), &b);
+      shooting_solution even = shooting_solution_of_system(two_masses(), &a),
+                        free = shooting_solution_of_system(two_masses(), &b);
       ric_multipliers mu[2];
-      shot_guess(&even, q, u, NULL, period);
-      shot_guess(&free, q, u, &time, period);
+      shooting_solution_guess(&even, q, u, NULL, period);
+      shooting_solution_guess(&free, q, u, &time, period);
       if (energy)
         even.given = free.given = 1.8;
-      shot_solve(&even);
-      shot_solve(&free);
+      shooting_solution_solve(&even);
+      shooting_solution_solve(&free);
       assert_int_equal(even.orbit.outcome, RIC_ADMISSIBLE);
       assert_int_equal(free.orbit.outcome, RIC_ADMISSIBLE);
       assert_close(free.orbit.period, even.orbit.period, 1e-11);
@@ -52,7 +53,7 @@ static void conservative_motions_are_the_even_ones(void **state) {
         assert_close(free.orbit.v[i], even.orbit.v[i], 1e-10);
         assert_close(free.orbit.q_half[i], even.orbit.q_half[i], 1e-10);
       }
-      shot *both[2] = {&even, &free};
+      shooting_solution *both[2] = {&even, &free};
       for (int k = 0; k < 2; k++) {
         assert_int_equal(ric_multipliers_init(&mu[k], 4, NULL), RIC_OK);
         assert_int_equal(ric_shooting_multipliers(both[k]->shooting, both[k]->z, both[k]->given, NULL, &mu[k], NULL),
@@ -67,8 +68,8 @@ static void conservative_motions_are_the_even_ones(void **state) {
       }
       ric_multipliers_clear(&mu[0]);
       ric_multipliers_clear(&mu[1]);
-      shot_clear(&even);
-      shot_clear(&free);
+      shooting_solution_clear(&even);
+      shooting_solution_clear(&free);
     }
 }
 
@@ -83,26 +84,26 @@ static void limit_cycles_are_those_that_runs_tend_to(void **state) {
                                     .count = count,
                                     .flow = {.tolerance = 1e-13, .longest_step = INFINITY}};
     double x[2] = {count ? 1.5 : 2, count ? -0.6 : 0}, time = 0, settled[2];
-    shot s = shot_at(van_der_pol_system(&wall[count]), &problem);
-    shot_guess(&s, x, NULL, &time, count ? 5 : 6.4);
-    shot_solve(&s);
+    shooting_solution s = shooting_solution_of_system(van_der_pol_system(&wall[count]), &problem);
+    shooting_solution_guess(&s, x, NULL, &time, count ? 5 : 6.4);
+    shooting_solution_solve(&s);
     assert_int_equal(s.orbit.outcome, RIC_ADMISSIBLE);
     /* A run from afar settles on it: after any number of periods more it is where it was. */
-    recorded r = record(s.system, NULL, s.orbit.q, NULL, 40 * s.orbit.period + 0.1);
+    recorded_run r = record_run(s.system, NULL, s.orbit.q, NULL, 40 * s.orbit.period + 0.1);
     memcpy(settled, r.q, sizeof settled);
-    assert_int_equal(recorded_impacts(&r), count * 41 - count); /* the first state is just after one */
-    recorded_clear(&r);
-    r = record(s.system, NULL, s.orbit.q, NULL, 0.1);
+    assert_int_equal(recorded_run_impacts(&r), count * 41 - count); /* the first state is just after one */
+    recorded_run_clear(&r);
+    r = record_run(s.system, NULL, s.orbit.q, NULL, 0.1);
     assert_close(r.q[0], settled[0], 1e-8);
     assert_close(r.q[1], settled[1], 1e-8);
-    recorded_clear(&r);
+    recorded_run_clear(&r);
     ric_multipliers mu;
     assert_int_equal(ric_multipliers_init(&mu, 2, NULL), RIC_OK);
     assert_int_equal(ric_shooting_multipliers(s.shooting, s.z, s.given, NULL, &mu, NULL), RIC_OK);
     assert_int_equal(mu.stable, RIC_STABLE);
     assert_close(hypot(mu.mu[0].re - 1, mu.mu[0].im), 0, 1e-7);
     ric_multipliers_clear(&mu);
-    shot_clear(&s);
+    shooting_solution_clear(&s);
   }
 }
 
@@ -122,7 +123,7 @@ static void pieces_find_unstable_motions_from_farther_away(void **state) {
   for (int k = 0; k < 2; k++) {
     ric_shooting_problem problem = {
         .kind = RIC_MOTION_FORCED, .pieces = k ? 12 : 1, .flow = ric_flow_options_default()};
-    shot s = shot_at(lattice_system(&lattice, NULL, 0), &problem);
+    shooting_solution s = shooting_solution_of_system(lattice_system(&lattice, NULL, 0), &problem);
     const double period = 6.283185307179586;
     for (size_t i = 0; i < s.unknowns; i++)
       s.z[i] = 0; /* not the motion from there, which runs away */
@@ -132,7 +133,7 @@ static void pieces_find_unstable_motions_from_farther_away(void **state) {
       assert_close(s.orbit.q[0], 0.1, 1e-4);
       assert_true(s.orbit.residual < 1e-12);
     }
-    shot_clear(&s);
+    shooting_solution_clear(&s);
   }
   print_message("[ one piece: %s, %d steps; twelve: %d steps ]\n", ric_status_text(status[0]), steps[0], steps[1]);
   assert_int_equal(status[1], RIC_OK);
@@ -192,15 +193,15 @@ static void starts_that_do_not_converge_say_so(void **state) {
   int iterations;
   ric_shooting_problem problem = {
       .kind = RIC_MOTION_EVEN, .at_start = &hits, .start_count = 1, .flow = ric_flow_options_default()};
-  shot s = shot_at(two_masses(), &problem);
+  shooting_solution s = shooting_solution_of_system(two_masses(), &problem);
   double q[2] = {300, 2}, u[2] = {0, -500};
-  shot_guess(&s, q, u, NULL, 6.8);
+  shooting_solution_guess(&s, q, u, NULL, 6.8);
   ric_status status = ric_shooting_solve(s.shooting, s.z, -1, 0, &iterations, &error);
   assert_int_equal(status, RIC_ENUMERIC);
   assert_non_null(strstr(error.message, "period = -1"));
   assert_int_equal(ric_shooting_guess(s.shooting, q, u, NULL, -2, s.z, &error), RIC_EINVAL);
   assert_non_null(strstr(error.message, "period = -2"));
-  shot_clear(&s);
+  shooting_solution_clear(&s);
 }
 
 int main(void) {

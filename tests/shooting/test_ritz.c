@@ -1,8 +1,8 @@
 /* Ritz's approximations against motions found by shooting. */
 #include "support.h"
 
-#include "witness/approximated.h"
-#include "witness/recorded.h"
+#include "witness/ritz_approximation.h"
+#include "witness/recorded_run.h"
 
 static const double turn = 6.283185307179586;
 
@@ -30,18 +30,18 @@ typedef struct orders {
   range q, v, defect, worst;
 } orders;
 
-static void measure_orders(shot *s, orders *o) {
+static void measure_orders(shooting_solution *s, orders *o) {
   double q[NUMBERS], v[NUMBERS], defect[NUMBERS];
   for (size_t k = 0; k < NUMBERS; k++) {
-    approximated a = approximate(s, numbers[k], true);
+    ritz_approximation a = ritz_approximate(s, numbers[k], true);
     q[k] = a.error_q;
     v[k] = a.error_v;
     defect[k] = ric_ritz_defect(a.ritz, a.c, s->given);
-    approximated_clear(&a);
+    ritz_approximation_clear(&a);
   }
-  widen(&o->q, order_of(numbers, q, NUMBERS));
-  widen(&o->v, order_of(numbers, v, NUMBERS));
-  widen(&o->defect, order_of(numbers, defect, NUMBERS));
+  widen(&o->q, convergence_order(numbers, q, NUMBERS));
+  widen(&o->v, convergence_order(numbers, v, NUMBERS));
+  widen(&o->defect, convergence_order(numbers, defect, NUMBERS));
   widen(&o->worst, q[NUMBERS - 1]);
 }
 
@@ -57,9 +57,9 @@ static void displacements_converge_with_the_third_power_and_residuals_with_the_f
   size_t count = 0;
   for (size_t e = 0; e < 4; e++)
     for (int k = 1; k <= 13; k++, count++) {
-      shot s = duffing_mode(epsilons[e], 0.05 * k, -1);
+      shooting_solution s = duffing_mode(epsilons[e], 0.05 * k, -1);
       measure_orders(&s, &o);
-      shot_clear(&s);
+      shooting_solution_clear(&s);
     }
   print_message("[ %zu motions, orders %.3f-%.3f (q), %.3f-%.3f (v), %.3f-%.3f (residual), errors %.2g-%.2g ]\n", count,
                 o.q.low, o.q.high, o.v.low, o.v.high, o.defect.low, o.defect.high, o.worst.low, o.worst.high);
@@ -79,9 +79,9 @@ static void longer_chains_converge_as_fast(void **state) {
   orders o = no_orders();
   for (size_t k = 0; k < 3; k++)
     for (int ends = RIC_ENDS_PERIODIC; ends <= RIC_ENDS_FREE; ends++) {
-      shot s = chain_mode(5, hits[k], (ric_ends)ends, 0.03, 5.6, +1);
+      shooting_solution s = chain_mode(5, hits[k], (ric_ends)ends, 0.03, 5.6, +1);
       measure_orders(&s, &o);
-      shot_clear(&s);
+      shooting_solution_clear(&s);
     }
   print_message("[ orders %.3f-%.3f (q), %.3f-%.3f (residual), errors %.2g-%.2g ]\n", o.q.low, o.q.high, o.defect.low,
                 o.defect.high, o.worst.low, o.worst.high);
@@ -95,19 +95,19 @@ static void longer_chains_converge_as_fast(void **state) {
 static void the_frequency_is_that_without_the_impact_and_stays_in_place(void **state) {
   (void)state;
   static const double slow = 0.8349996;
-  shot s = duffing_mode(0, 0.525, -1);
+  shooting_solution s = duffing_mode(0, 0.525, -1);
   double before = 0;
   for (size_t n = 1; n <= 32; n *= 2) {
-    approximated a = approximate(&s, n, true);
+    ritz_approximation a = ritz_approximate(&s, n, true);
     double w = a.c[ric_ritz_unknowns(a.ritz) - 1];
     print_message("[ N %zu: w %.5f, without impact %.5f, 2 pi / T %.5f ]\n", n, w, slow, turn / s.given);
     assert_close(w, slow, 0.02);
     if (n > 4)
       assert_close(w, before, 1e-3);
     before = w;
-    approximated_clear(&a);
+    ritz_approximation_clear(&a);
   }
-  shot_clear(&s);
+  shooting_solution_clear(&s);
 }
 
 /* The impact's impulse 2 V per period presses on the spring to the ground: the mean of q_1 is -2 V / (3 T). */
@@ -115,35 +115,35 @@ static void without_constants_errors_stall_at_the_mean_of_the_motion(void **stat
   (void)state;
   static const double epsilons[3] = {0, 0.1, 0.2};
   for (size_t e = 0; e < 3; e++) {
-    shot s = duffing_mode(epsilons[e], 0.525, -1);
+    shooting_solution s = duffing_mode(epsilons[e], 0.525, -1);
     double mean = 2 * fabs(s.orbit.v[1]) / (3 * s.given);
     for (size_t k = 0; k < NUMBERS; k++) {
-      approximated a = approximate(&s, numbers[k], false), b = approximate(&s, numbers[k], true);
+      ritz_approximation a = ritz_approximate(&s, numbers[k], false), b = ritz_approximate(&s, numbers[k], true);
       print_message("[ eps %g, T %.4f, N %zu: error %.3g without constants, %.3g with; mean of q_1 %.3g ]\n",
                     epsilons[e], s.given, numbers[k], a.error_q, b.error_q, mean);
       assert_within(a.error_q, 0.9 * mean, 1.6 * mean, "error");
       assert_true(b.error_q < 0.01 * a.error_q);
-      approximated_clear(&a);
-      approximated_clear(&b);
+      ritz_approximation_clear(&a);
+      ritz_approximation_clear(&b);
     }
-    shot_clear(&s);
+    shooting_solution_clear(&s);
   }
 }
 
 /* Nothing jumps but what w makes jump. */
 static void a_single_oscillator_converges_faster_than_any_power(void **state) {
   (void)state;
-  shot s = chain_mode(1, 0, RIC_ENDS_FREE, 0, 5, +1);
+  shooting_solution s = chain_mode(1, 0, RIC_ENDS_FREE, 0, 5, +1);
   double before = 1;
   for (size_t n = 1; n <= 8; n *= 2) {
-    approximated a = approximate(&s, n, true);
+    ritz_approximation a = ritz_approximate(&s, n, true);
     print_message("[ N %zu: error %.3g ]\n", n, a.error_q);
     assert_true(a.error_q < pow(0.1, (double)n));
     assert_true(a.error_q < before);
     before = a.error_q;
-    approximated_clear(&a);
+    ritz_approximation_clear(&a);
   }
-  shot_clear(&s);
+  shooting_solution_clear(&s);
 }
 
 /* q = b cos(T/2 - t) / cos(T/2) is one function with w = 1, the frequency without the impact. */
@@ -156,22 +156,22 @@ static void a_linear_oscillator_is_represented_exactly(void **state) {
       .kind = RIC_MOTION_EVEN, .at_start = &zero, .start_count = 1, .flow = ric_flow_options_default()};
   ric_system *system = NULL;
   assert_int_equal(ric_system_create_lattice(&lattice, &floor, 1, &system, NULL), RIC_OK);
-  shot s = shot_at(system, &problem);
+  shooting_solution s = shooting_solution_of_system(system, &problem);
   const double q = -1, u = 1;
-  shot_guess(&s, &q, &u, NULL, 5);
-  shot_solve(&s);
-  approximated a = approximate(&s, 1, true);
+  shooting_solution_guess(&s, &q, &u, NULL, 5);
+  shooting_solution_solve(&s);
+  ritz_approximation a = ritz_approximate(&s, 1, true);
   assert_close(a.c[0], 0, 1e-12);
   assert_close(a.c[1], -1 / cos(2.5), 1e-12);
   assert_close(a.c[2], 1, 1e-12);
   assert_close(a.error_q, 0, 1e-12);
-  approximated_clear(&a);
-  shot_clear(&s);
+  ritz_approximation_clear(&a);
+  shooting_solution_clear(&s);
 }
 
 static void refining_takes_as_many_functions_as_the_tolerance_needs(void **state) {
   (void)state;
-  shot s = duffing_mode(0.1, 0.4, -1);
+  shooting_solution s = duffing_mode(0.1, 0.4, -1);
   const ric_ritz_options options = {.functions = 64, .constants = true};
   ric_ritz *ritz = NULL;
   double c[2 * 65 + 1], error_q = 0, again = 0;
@@ -190,13 +190,13 @@ static void refining_takes_as_many_functions_as_the_tolerance_needs(void **state
   assert_non_null(strstr(error.message, "with 64 functions, expected 1e-12 at most"));
   assert_true(error_q < 1e-6);
   ric_ritz_destroy(&ritz);
-  shot_clear(&s);
+  shooting_solution_clear(&s);
 }
 
 /* --- the motion --------------------------------------------------------------------------------------------------- */
 
 /* How much the energy of the approximated motion varies, and how much its errors allow. */
-static void measure_energy(shot *s, const approximated *a, double *spread, double *allowed) {
+static void measure_energy(shooting_solution *s, const ritz_approximation *a, double *spread, double *allowed) {
   double low = INFINITY, high = -INFINITY, force = 0, speed = 0, q[2], v[2], rate[2], acceleration[2];
   for (int k = 0; k <= 400; k++) {
     ric_ritz_state(a->ritz, a->c, s->given, s->given * k / 400, q, v);
@@ -213,48 +213,49 @@ static void measure_energy(shot *s, const approximated *a, double *spread, doubl
 
 static void the_energy_varies_by_no_more_than_the_error(void **state) {
   (void)state;
-  shot s = duffing_mode(0.2, 0.5, -1);
+  shooting_solution s = duffing_mode(0.2, 0.5, -1);
   double spread[NUMBERS], allowed;
   for (size_t k = 0; k < NUMBERS; k++) {
-    approximated a = approximate(&s, numbers[k], true);
+    ritz_approximation a = ritz_approximate(&s, numbers[k], true);
     measure_energy(&s, &a, &spread[k], &allowed);
     print_message("[ N %zu: energy varies by %.3g, errors allow %.3g ]\n", numbers[k], spread[k], allowed);
     assert_true(spread[k] <= allowed);
-    approximated_clear(&a);
+    ritz_approximation_clear(&a);
   }
-  assert_true(order_of(numbers, spread, NUMBERS) > 1.9);
-  shot_clear(&s);
+  assert_true(convergence_order(numbers, spread, NUMBERS) > 1.9);
+  shooting_solution_clear(&s);
 }
 
 static void a_floor_mirrors_a_wall(void **state) {
   (void)state;
-  shot wall = duffing_mode(0.1, 0.4, -1), floor = duffing_mode(0.1, 0.4, +1);
-  approximated a = approximate(&wall, 16, true), b = approximate(&floor, 16, true);
+  shooting_solution wall = duffing_mode(0.1, 0.4, -1), floor = duffing_mode(0.1, 0.4, +1);
+  ritz_approximation a = ritz_approximate(&wall, 16, true), b = ritz_approximate(&floor, 16, true);
   size_t last = ric_ritz_unknowns(a.ritz) - 1;
   for (size_t i = 0; i < last; i++)
     assert_close(a.c[i], -b.c[i], 1e-9);
   assert_close(a.c[last], b.c[last], 1e-9);
-  approximated_clear(&a);
-  approximated_clear(&b);
-  shot_clear(&wall);
-  shot_clear(&floor);
+  ritz_approximation_clear(&a);
+  ritz_approximation_clear(&b);
+  shooting_solution_clear(&wall);
+  shooting_solution_clear(&floor);
 }
 
 static void chains_are_mirrored_with_their_quadratic_springs(void **state) {
   (void)state;
-  shot floor = chain_mode(5, 2, RIC_ENDS_FIXED, 0.03, 5.6, +1), wall = chain_mode(5, 2, RIC_ENDS_FIXED, 0.03, 5.6, -1);
-  approximated a = approximate(&wall, 12, true), b = approximate(&floor, 12, true);
+  shooting_solution floor = chain_mode(5, 2, RIC_ENDS_FIXED, 0.03, 5.6, +1),
+                    wall = chain_mode(5, 2, RIC_ENDS_FIXED, 0.03, 5.6, -1);
+  ritz_approximation a = ritz_approximate(&wall, 12, true), b = ritz_approximate(&floor, 12, true);
   assert_close(a.error_q, b.error_q, 1e-3 * b.error_q);
-  approximated_clear(&a);
-  approximated_clear(&b);
-  shot_clear(&wall);
-  shot_clear(&floor);
+  ritz_approximation_clear(&a);
+  ritz_approximation_clear(&b);
+  shooting_solution_clear(&wall);
+  shooting_solution_clear(&floor);
 }
 
 /* --- units ------------------------------------------------------------------------------------------------------- */
 
 /* A motion of duffing_masses(0.1, -1) with lengths and rates in other units. */
-static shot in_units(const shot *s, double length, double rate) {
+static shooting_solution in_units(const shooting_solution *s, double length, double rate) {
   static const size_t zero = 0;
   const double stiff = rate * rate;
   const ric_spring links[3] = {{.linear = 3 * stiff}, {.linear = stiff, .cubic = 0.1 * stiff / length / length}};
@@ -264,7 +265,7 @@ static shot in_units(const shot *s, double length, double rate) {
   ric_lattice lattice = ric_lattice_default(2, RIC_ENDS_FIXED);
   lattice.on_site = (ric_spring){0};
   lattice.links = links;
-  shot other = shot_at(lattice_system(&lattice, &wall, 1), &problem);
+  shooting_solution other = shooting_solution_of_system(lattice_system(&lattice, &wall, 1), &problem);
   other.given = s->given / rate;
   other.z[0] = s->z[0] * length;
   other.z[1] = s->z[1] * length * rate;
@@ -274,21 +275,21 @@ static shot in_units(const shot *s, double length, double rate) {
 static void units_of_length_and_time_change_nothing(void **state) {
   (void)state;
   static const double lengths[] = {1, 1e-9, 1e-100, 1e9, 1, 1, 1e-12}, rates[] = {1, 1, 1, 1, 1e-6, 1e6, 1e-9};
-  shot s = duffing_mode(0.1, 0.4, -1);
-  approximated a = approximate(&s, 16, true);
+  shooting_solution s = duffing_mode(0.1, 0.4, -1);
+  ritz_approximation a = ritz_approximate(&s, 16, true);
   size_t last = ric_ritz_unknowns(a.ritz) - 1;
   for (size_t k = 0; k < sizeof lengths / sizeof *lengths; k++) {
-    shot other = in_units(&s, lengths[k], rates[k]);
-    approximated b = approximate(&other, 16, true);
+    shooting_solution other = in_units(&s, lengths[k], rates[k]);
+    ritz_approximation b = ritz_approximate(&other, 16, true);
     for (size_t i = 0; i < last; i++)
       assert_close(b.c[i] / lengths[k], a.c[i], 1e-11);
     assert_close(b.c[last] / rates[k], a.c[last], 1e-10);
     assert_close(b.error_q / lengths[k] / a.error_q, 1, 1e-6);
-    approximated_clear(&b);
-    shot_clear(&other);
+    ritz_approximation_clear(&b);
+    shooting_solution_clear(&other);
   }
-  approximated_clear(&a);
-  shot_clear(&s);
+  ritz_approximation_clear(&a);
+  shooting_solution_clear(&s);
 }
 
 static void rest_has_no_defect(void **state) {
@@ -307,7 +308,7 @@ static void rest_has_no_defect(void **state) {
 
 typedef struct walk_state {
   ric_ritz *ritz;
-  shot *shot;
+  shooting_solution *shooting_solution;
   size_t points;
   double worst_q, worst_v, w_low, w_high;
 } walk_state;
@@ -323,10 +324,11 @@ static int see(const ric_curve_point *point, void *user) {
   double q[2], v[2], error_q, error_v, g = point->u[ric_ritz_unknowns(w->ritz) - 1] * point->p / turn;
   assert_int_equal(point->kind, RIC_CURVE_REGULAR);
   ric_ritz_state(w->ritz, point->u, point->p, 0, q, v);
-  shot_guess(w->shot, q, v, NULL, point->p);
-  shot_solve(w->shot);
-  assert_int_equal(w->shot->orbit.outcome, RIC_ADMISSIBLE);
-  assert_int_equal(ric_ritz_error(w->ritz, point->u, point->p, w->shot->shooting, w->shot->z, &error_q, &error_v, NULL),
+  shooting_solution_guess(w->shooting_solution, q, v, NULL, point->p);
+  shooting_solution_solve(w->shooting_solution);
+  assert_int_equal(w->shooting_solution->orbit.outcome, RIC_ADMISSIBLE);
+  assert_int_equal(ric_ritz_error(w->ritz, point->u, point->p, w->shooting_solution->shooting, w->shooting_solution->z,
+                                  &error_q, &error_v, NULL),
                    RIC_OK);
   w->worst_q = fmax(w->worst_q, error_q);
   w->worst_v = fmax(w->worst_v, error_v);
@@ -338,10 +340,10 @@ static int see(const ric_curve_point *point, void *user) {
 
 static void families_along_the_period_agree_with_shooting(void **state) {
   (void)state;
-  shot s = duffing_mode(0.1, 0.05, -1);
+  shooting_solution s = duffing_mode(0.1, 0.05, -1);
   double start = s.given;
-  approximated a = approximate(&s, 16, true);
-  walk_state w = {.ritz = a.ritz, .shot = &s, .w_low = 1};
+  ritz_approximation a = ritz_approximate(&s, 16, true);
+  walk_state w = {.ritz = a.ritz, .shooting_solution = &s, .w_low = 1};
   const ric_curve_problem problem = {.unknowns = ric_ritz_unknowns(a.ritz), .residual = residual, .user = &w};
   ric_curve_options options = ric_curve_options_default();
   ric_curve *curve = NULL;
@@ -360,8 +362,8 @@ static void families_along_the_period_agree_with_shooting(void **state) {
   assert_true(w.worst_q < 6e-5 && w.worst_v < 1.2e-3);
   assert_true(w.w_high < 1);
   ric_curve_destroy(&curve);
-  approximated_clear(&a);
-  shot_clear(&s);
+  ritz_approximation_clear(&a);
+  shooting_solution_clear(&s);
 }
 
 int main(void) {

@@ -1,9 +1,9 @@
 /* Ritz's equations as such: derivatives, quadrature, numbers of functions, states. */
 #include "support.h"
 
-#include "witness/approximated.h"
+#include "witness/ritz_approximation.h"
 #include "witness/random_lattice.h"
-#include "witness/recorded.h"
+#include "witness/recorded_run.h"
 
 static const double turn = 6.283185307179586;
 
@@ -215,8 +215,8 @@ static void velocities_are_derivatives(void **state) {
 
 static void equations_follow_the_numbers_of_their_system(void **state) {
   (void)state;
-  shot s = duffing_mode(0.1, 0.4, -1);
-  approximated a = approximate(&s, 8, true);
+  shooting_solution s = duffing_mode(0.1, 0.4, -1);
+  ritz_approximation a = ritz_approximate(&s, 8, true);
   ric_system *other = duffing_masses(0.2, -1);
   const ric_spring links[3] = {[0] = {.linear = 3}, [1] = {.linear = 1, .cubic = 0.2}};
   const ric_ritz_options options = {.functions = 8, .constants = true};
@@ -236,8 +236,8 @@ static void equations_follow_the_numbers_of_their_system(void **state) {
   assert_close(F[18] - expected[18], 0.1, 1e-14);
   ric_ritz_destroy(&fresh);
   ric_system_destroy(&other);
-  approximated_clear(&a);
-  shot_clear(&s);
+  ritz_approximation_clear(&a);
+  shooting_solution_clear(&s);
 }
 
 int main(void) {

@@ -1,8 +1,8 @@
 /* What Ritz's method refuses: named, with the value received. */
 #include "support.h"
 
-#include "witness/approximated.h"
-#include "witness/recorded.h"
+#include "witness/ritz_approximation.h"
+#include "witness/recorded_run.h"
 
 static void assert_says(ric_status status, ric_status expected, const ric_error *error, const char *part) {
   assert_int_equal(status, expected);
@@ -102,21 +102,21 @@ static void other_obstacles_are_refused(void **state) {
 /* --- calls -------------------------------------------------------------------------------------------------------- */
 
 typedef struct fixture {
-  shot s;
-  approximated a;
+  shooting_solution s;
+  ritz_approximation a;
   double F[64];
   ric_error error;
 } fixture;
 
 static fixture good_case(void) {
   fixture f = {.s = duffing_mode(0.1, 0.4, -1)};
-  f.a = approximate(&f.s, 4, true);
+  f.a = ritz_approximate(&f.s, 4, true);
   return f;
 }
 
 static void clear(fixture *f) {
-  approximated_clear(&f->a);
-  shot_clear(&f->s);
+  ritz_approximation_clear(&f->a);
+  shooting_solution_clear(&f->s);
 }
 
 static void numbers_that_have_no_residual_are_refused(void **state) {

@@ -2,9 +2,9 @@
 #include "support.h"
 
 #include "witness/double_pendulum.h"
-#include "witness/multiplied.h"
-#include "witness/recorded.h"
-#include "witness/shot.h"
+#include "witness/multiplier_witness.h"
+#include "witness/recorded_run.h"
+#include "witness/shooting_solution.h"
 #include "scenario/example1.h"
 
 enum { PATTERNS = 200 };
@@ -19,27 +19,27 @@ static void shooting_meets_impulse_responses_in_one_iteration(void **state) {
   double worst = 0;
   int compared = 0;
   for (int i = 0; compared < PATTERNS; i++) {
-    solved x = solved_by(RIC_METHOD_IMPULSE, scenario_random(&source, &ranges));
-    if (solved_has_state(&x) && x.orbit.outcome != RIC_RESONANT && x.orbit.condition < 100) {
+    solved_orbit x = solve_orbit(RIC_METHOD_IMPULSE, scenario_random(&source, &ranges));
+    if (solved_orbit_has_state(&x) && x.orbit.outcome != RIC_RESONANT && x.orbit.condition < 100) {
       size_t n = x.scenario.chain.particles;
       double q[24], v[24];
       for (size_t k = 0; k < n; k++) {
         q[k] = random_uniform(&source, -1, 1);
         v[k] = random_uniform(&source, -1, 1);
       }
-      shot s = shot_of_chain(&x.scenario.chain, x.scenario.pattern);
-      shot_guess(&s, q, v, NULL, x.scenario.period);
-      shot_solve(&s);
+      shooting_solution s = shooting_solution_of_chain(&x.scenario.chain, x.scenario.pattern);
+      shooting_solution_guess(&s, q, v, NULL, x.scenario.period);
+      shooting_solution_solve(&s);
       assert_int_equal(s.iterations, 1);
-      worst = fmax(worst, state_difference(&x.orbit, &s.orbit) / solved_scale(&x));
+      worst = fmax(worst, state_difference(&x.orbit, &s.orbit) / solved_orbit_scale(&x));
       assert_int_equal(s.orbit.outcome, x.orbit.outcome);
       for (size_t k = 0; k < s.orbit.impacts; k++) {
-        assert_close(s.orbit.impulse[k], impulse_of(&x, s.orbit.impact_obstacle[k]), 1e-11 * solved_scale(&x));
+        assert_close(s.orbit.impulse[k], impulse_of(&x, s.orbit.impact_obstacle[k]), 1e-11 * solved_orbit_scale(&x));
       }
       compared++;
-      shot_clear(&s);
+      shooting_solution_clear(&s);
     }
-    solved_clear(&x);
+    solved_orbit_clear(&x);
   }
   print_message("[ %d patterns, worst %.3g of the displacement ]\n", compared, worst);
   assert_true(worst <= 1e-12);
@@ -49,19 +49,19 @@ static void clearances_are_those_of_the_chain(void **state) {
   (void)state;
   random_source source = {.state = 6};
   for (int i = 0; i < 60; i++) {
-    solved x = solved_by(RIC_METHOD_IMPULSE, scenario_random(&source, &ranges));
-    if (solved_has_state(&x) && x.orbit.condition < 100 && x.orbit.outcome != RIC_RESONANT) {
-      shot s = shot_of_chain(&x.scenario.chain, x.scenario.pattern);
-      shot_guess(&s, x.orbit.q, x.orbit.v, NULL, x.scenario.period);
-      shot_solve(&s);
+    solved_orbit x = solve_orbit(RIC_METHOD_IMPULSE, scenario_random(&source, &ranges));
+    if (solved_orbit_has_state(&x) && x.orbit.condition < 100 && x.orbit.outcome != RIC_RESONANT) {
+      shooting_solution s = shooting_solution_of_chain(&x.scenario.chain, x.scenario.pattern);
+      shooting_solution_guess(&s, x.orbit.q, x.orbit.v, NULL, x.scenario.period);
+      shooting_solution_solve(&s);
       if (isnan(x.orbit.clearance))
         assert_true(isnan(s.orbit.clearance));
       else
-        assert_close(s.orbit.clearance, x.orbit.clearance, 1e-11 * solved_scale(&x));
+        assert_close(s.orbit.clearance, x.orbit.clearance, 1e-11 * solved_orbit_scale(&x));
       assert_close(s.orbit.energy, x.orbit.energy, 1e-11 * x.orbit.energy);
-      shot_clear(&s);
+      shooting_solution_clear(&s);
     }
-    solved_clear(&x);
+    solved_orbit_clear(&x);
   }
 }
 
@@ -71,11 +71,11 @@ static void even_multipliers_are_those_of_the_chain(void **state) {
   double worst = 0;
   int compared = 0;
   for (int i = 0; i < 200; i++) {
-    solved x = solved_by(RIC_METHOD_IMPULSE, scenario_few(&source, &ranges, 6));
-    if (solved_has_state(&x) && x.orbit.condition < 100 && x.orbit.outcome != RIC_RESONANT) {
+    solved_orbit x = solve_orbit(RIC_METHOD_IMPULSE, scenario_few(&source, &ranges, 6));
+    if (solved_orbit_has_state(&x) && x.orbit.condition < 100 && x.orbit.outcome != RIC_RESONANT) {
       ric_multipliers a = multipliers_by(RIC_MULTIPLIERS_REDUCED, &x, false), b;
-      shot s = shot_of_chain(&x.scenario.chain, x.scenario.pattern);
-      shot_guess(&s, x.orbit.q, x.orbit.v, NULL, x.scenario.period);
+      shooting_solution s = shooting_solution_of_chain(&x.scenario.chain, x.scenario.pattern);
+      shooting_solution_guess(&s, x.orbit.q, x.orbit.v, NULL, x.scenario.period);
       assert_int_equal(ric_multipliers_init(&b, 2 * x.scenario.chain.particles, NULL), RIC_OK);
       assert_int_equal(ric_shooting_multipliers(s.shooting, s.z, s.given, NULL, &b, NULL), RIC_OK);
       assert_int_equal(a.stable == RIC_STABILITY_UNKNOWN, b.stable == RIC_STABILITY_UNKNOWN);
@@ -85,9 +85,9 @@ static void even_multipliers_are_those_of_the_chain(void **state) {
       }
       ric_multipliers_clear(&a);
       ric_multipliers_clear(&b);
-      shot_clear(&s);
+      shooting_solution_clear(&s);
     }
-    solved_clear(&x);
+    solved_orbit_clear(&x);
   }
   print_message("[ %d orbits, worst %.3g of the largest multiplier ]\n", compared, worst);
   assert_true(compared > 100);
@@ -113,7 +113,7 @@ static ric_system *two_masses(bool forced, double restitution) {
   return lattice_system(&l, &wall, 1);
 }
 
-static void fill_z(shot *s, double period, size_t impacts) {
+static void fill_z(shooting_solution *s, double period, size_t impacts) {
   random_source source = {.state = 3};
   double q[8], u[8], times[8];
   for (size_t i = 0; i < 8; i++) {
@@ -121,21 +121,21 @@ static void fill_z(shot *s, double period, size_t impacts) {
     u[i] = random_uniform(&source, -0.7, 0.7);
     times[i] = 0.1 * period + (double)i / (double)(impacts ? impacts : 1) * 0.4 * period;
   }
-  shot_guess(s, q, u, times, period);
+  shooting_solution_guess(s, q, u, times, period);
   for (size_t i = 0; i < s->unknowns; i++)
     s->z[i] += random_uniform(&source, -0.02, 0.02);
 }
 
 static void assert_jacobian(ric_system *system, const ric_shooting_problem *problem, double period, double bound) {
-  shot s = shot_at(system, problem);
+  shooting_solution s = shooting_solution_of_system(system, problem);
   fill_z(&s, period, problem->count);
   if (problem->kind == RIC_MOTION_CONSERVATIVE) /* what it multiplies moves, too, and is left out: zero at solutions */
     s.z[s.unknowns - 1] = 0;
-  double error = shot_jacobian_error(&s, 1e-5);
+  double error = shooting_jacobian_error(&s, 1e-5);
   if (!(error < bound))
     fail_msg("kind %d, %zu impacts, %zu pieces: error %g, expected below %g", (int)problem->kind, problem->count,
              problem->pieces, error, bound);
-  shot_clear(&s);
+  shooting_solution_clear(&s);
 }
 
 static void jacobians_are_derivatives(void **state) {

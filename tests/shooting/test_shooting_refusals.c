@@ -2,14 +2,14 @@
  * for granted, or because the ends of a conservative motion are apart. */
 #include "support.h"
 
-#include "witness/shot.h"
+#include "witness/shooting_solution.h"
 
-#include "witness/recorded.h"
+#include "witness/recorded_run.h"
 
 static const double turn = 6.283185307179586;
 
 /* The equations hold, and yet it is no motion. */
-static void assert_no_motion(const shot *s, const char *word) {
+static void assert_no_motion(const shooting_solution *s, const char *word) {
   assert_true(s->orbit.residual < 1e-11);
   if (s->orbit.outcome != RIC_FAILED || !strstr(s->orbit.reason, word))
     fail_msg("%s \"%s\", expected a failure that says \"%s\"", ric_outcome_name(s->orbit.outcome), s->orbit.reason,
@@ -19,14 +19,14 @@ static void assert_no_motion(const shot *s, const char *word) {
 /* --- even --------------------------------------------------------------------------------------------------------- */
 
 /* Half a motion of two masses, the first of which hits a wall at t = 0 when `hits`. Takes the system over. */
-static shot even_shot(ric_system *system, bool hits) {
+static shooting_solution even_shot(ric_system *system, bool hits) {
   static const size_t wall = 0;
   const ric_shooting_problem problem = {
       .kind = RIC_MOTION_EVEN, .at_start = &wall, .start_count = hits, .flow = ric_flow_options_default()};
   const double q[2] = {1, 0.2}, u[2] = {-0.5, 0};
-  shot s = shot_at(system, &problem);
-  shot_guess(&s, q, u, NULL, turn / 1.3);
-  shot_solve(&s);
+  shooting_solution s = shooting_solution_of_system(system, &problem);
+  shooting_solution_guess(&s, q, u, NULL, turn / 1.3);
+  shooting_solution_solve(&s);
   return s;
 }
 
@@ -41,9 +41,9 @@ static ric_lattice pushed_masses(const double *push) {
 static void assert_even_shot_fails(const ric_lattice *lattice) {
   const ric_obstacle wall = ric_obstacle_wall(0, 1);
   for (int hits = 0; hits < 2; hits++) {
-    shot s = even_shot(lattice_system(lattice, &wall, 1), hits);
+    shooting_solution s = even_shot(lattice_system(lattice, &wall, 1), hits);
     assert_no_motion(&s, "does not run backwards");
-    shot_clear(&s);
+    shooting_solution_clear(&s);
   }
 }
 
@@ -53,9 +53,9 @@ static void even_motions_of_systems_that_run_backwards_as_forwards_are_motions(v
   const ric_lattice lattice = pushed_masses(push);
   const ric_obstacle wall = ric_obstacle_wall(0, 1);
   for (int hits = 0; hits < 2; hits++) {
-    shot s = even_shot(lattice_system(&lattice, &wall, 1), hits);
+    shooting_solution s = even_shot(lattice_system(&lattice, &wall, 1), hits);
     assert_true(s.orbit.outcome != RIC_FAILED);
-    shot_clear(&s);
+    shooting_solution_clear(&s);
   }
 }
 
@@ -91,15 +91,15 @@ static void even_motions_of_gyroscopic_systems_are_none(void **state) {
                          .force_cos = push};
   ric_system *system = NULL;
   assert_int_equal(ric_system_create_mck(&model, NULL, 0, &system, NULL), RIC_OK);
-  shot s = even_shot(system, false);
+  shooting_solution s = even_shot(system, false);
   assert_no_motion(&s, "does not run backwards");
-  shot_clear(&s);
+  shooting_solution_clear(&s);
 }
 
 /* --- forced ------------------------------------------------------------------------------------------------------- */
 
 /* Two damped masses, pushed, over a period of the caller's. The equations have a solution for any. */
-static shot forced_shot(double period, size_t impacts) {
+static shooting_solution forced_shot(double period, size_t impacts) {
   static const double push[2] = {1.5, 0};
   static const size_t wall = 0;
   ric_lattice lattice = pushed_masses(push);
@@ -109,9 +109,9 @@ static shot forced_shot(double period, size_t impacts) {
   const ric_shooting_problem problem = {
       .kind = RIC_MOTION_FORCED, .sequence = &wall, .count = impacts, .flow = ric_flow_options_default()};
   const double q[2] = {0.5, 0}, u[2] = {-1, 0}, time = 0.4;
-  shot s = shot_at(lattice_system(&lattice, &obstacle, 1), &problem);
-  shot_guess(&s, q, u, &time, period);
-  shot_solve(&s);
+  shooting_solution s = shooting_solution_of_system(lattice_system(&lattice, &obstacle, 1), &problem);
+  shooting_solution_guess(&s, q, u, &time, period);
+  shooting_solution_solve(&s);
   return s;
 }
 
@@ -120,14 +120,14 @@ static void forced_motions_of_a_period_that_the_forcing_has_not_are_none(void **
   static const double wrong[] = {0.5, 0.999, 1.5, 2 + 1e-3}, right[] = {1, 2};
   for (size_t impacts = 0; impacts < 2; impacts++) {
     for (size_t k = 0; k < sizeof wrong / sizeof *wrong; k++) {
-      shot s = forced_shot(wrong[k] * turn / 1.3, impacts);
+      shooting_solution s = forced_shot(wrong[k] * turn / 1.3, impacts);
       assert_no_motion(&s, "the forcing does not repeat");
-      shot_clear(&s);
+      shooting_solution_clear(&s);
     }
     for (size_t k = 0; k < sizeof right / sizeof *right; k++) {
-      shot s = forced_shot(right[k] * turn / 1.3, impacts);
+      shooting_solution s = forced_shot(right[k] * turn / 1.3, impacts);
       assert_true(s.orbit.outcome != RIC_FAILED);
-      shot_clear(&s);
+      shooting_solution_clear(&s);
     }
   }
 }
@@ -158,7 +158,7 @@ static int energy(double t, const double *q, const double *u, double *e, void *u
   return 0;
 }
 
-static shot shaken_shot(shaken *user, ric_motion_kind kind) {
+static shooting_solution shaken_shot(shaken *user, ric_motion_kind kind) {
   static const size_t wall = 0;
   const ric_mechanical model = {
       .coordinates = 1, .speeds = 1, .obstacles = 1, .force = force, .gap = gap, .energy = energy, .user = user};
@@ -167,9 +167,9 @@ static shot shaken_shot(shaken *user, ric_motion_kind kind) {
   const double q = 1 + user->wall, u = -2.5, time = 0;
   ric_system *system = NULL;
   assert_int_equal(ric_system_create_mechanical(&model, &system, NULL), RIC_OK);
-  shot s = shot_at(system, &problem);
-  shot_guess(&s, &q, &u, &time, turn / 1.6);
-  shot_solve(&s);
+  shooting_solution s = shooting_solution_of_system(system, &problem);
+  shooting_solution_guess(&s, &q, &u, &time, turn / 1.6);
+  shooting_solution_solve(&s);
   return s;
 }
 
@@ -178,12 +178,12 @@ static void conservative_motions_where_time_matters_are_none(void **state) {
   shaken still = {0}, pushed = {.force = 0.1}, moved = {.wall = 0.1};
   shaken *users[3] = {&still, &pushed, &moved};
   for (int k = 0; k < 3; k++) {
-    shot s = shaken_shot(users[k], RIC_MOTION_CONSERVATIVE);
+    shooting_solution s = shaken_shot(users[k], RIC_MOTION_CONSERVATIVE);
     if (k == 0)
       assert_int_equal(s.orbit.outcome, RIC_ADMISSIBLE);
     else
       assert_no_motion(&s, "depend on time");
-    shot_clear(&s);
+    shooting_solution_clear(&s);
   }
 }
 
@@ -207,7 +207,7 @@ static int bounce(double t, const double *x, size_t obstacle, double *after, voi
   return 0;
 }
 
-static shot self_excited_shot(shaken *user) {
+static shooting_solution self_excited_shot(shaken *user) {
   const ric_first_order model = {
       .states = 2, .obstacles = 1, .rate = rate, .gap = far_gap, .impact = bounce, .user = user};
   const ric_shooting_problem problem = {.kind = RIC_MOTION_AUTONOMOUS,
@@ -215,9 +215,9 @@ static shot self_excited_shot(shaken *user) {
   const double x[2] = {2, 0};
   ric_system *system = NULL;
   assert_int_equal(ric_system_create_first_order(&model, &system, NULL), RIC_OK);
-  shot s = shot_at(system, &problem);
-  shot_guess(&s, x, NULL, NULL, 6.4);
-  shot_solve(&s);
+  shooting_solution s = shooting_solution_of_system(system, &problem);
+  shooting_solution_guess(&s, x, NULL, NULL, 6.4);
+  shooting_solution_solve(&s);
   return s;
 }
 
@@ -226,12 +226,12 @@ static void autonomous_motions_where_time_matters_are_none(void **state) {
   shaken still = {0}, pushed = {.force = 1e-3}, moved = {.wall = 1e-3};
   shaken *users[3] = {&still, &pushed, &moved};
   for (int k = 0; k < 3; k++) {
-    shot s = self_excited_shot(users[k]);
+    shooting_solution s = self_excited_shot(users[k]);
     if (k == 0)
       assert_int_equal(s.orbit.outcome, RIC_ADMISSIBLE);
     else
       assert_no_motion(&s, "depend on time");
-    shot_clear(&s);
+    shooting_solution_clear(&s);
   }
 }
 
@@ -239,19 +239,19 @@ static void autonomous_motions_where_time_matters_are_none(void **state) {
 
 /* x'' = -x - x^3 from (a, 0) is at (-a, 0) after half its period, and the gradient of the energy, (a + a^3, 0), takes
  * it back with lambda = 2 / (1 + a^2): the equations for a motion of half the period hold. Begun at 0.35. */
-static shot swing(double period) {
+static shooting_solution swing(double period) {
   const ric_shooting_problem problem = {.kind = RIC_MOTION_CONSERVATIVE, .flow = ric_flow_options_default()};
   const double q = 0.35, u = 0;
   ric_lattice lattice = ric_lattice_default(1, RIC_ENDS_FREE);
   lattice.on_site.cubic = 1;
-  shot s = shot_at(lattice_system(&lattice, NULL, 0), &problem);
-  shot_guess(&s, &q, &u, NULL, period);
+  shooting_solution s = shooting_solution_of_system(lattice_system(&lattice, NULL, 0), &problem);
+  shooting_solution_guess(&s, &q, &u, NULL, period);
   return s;
 }
 
 static void conservative_motions_whose_ends_stay_apart_along_the_gradient_are_refused(void **state) {
   (void)state;
-  shot s = swing(2.98), whole = swing(2 * 2.98);
+  shooting_solution s = swing(2.98), whole = swing(2 * 2.98);
   double F[3];
   ric_error error;
   assert_int_equal(ric_shooting_solve(s.shooting, s.z, s.given, 0, NULL, &error), RIC_ENUMERIC);
@@ -265,12 +265,12 @@ static void conservative_motions_whose_ends_stay_apart_along_the_gradient_are_re
   assert_int_equal(ric_shooting_orbit(s.shooting, s.z, s.given, &s.orbit, NULL), RIC_OK);
   assert_no_motion(&s, "energy is not conserved");
   /* The motion of the whole period, from the same start. */
-  shot_solve(&whole);
+  shooting_solution_solve(&whole);
   assert_int_equal(whole.orbit.outcome, RIC_ADMISSIBLE);
   assert_close(whole.z[0], s.z[0], 1e-10);
   assert_close(whole.z[2], 0, 1e-12);
-  shot_clear(&s);
-  shot_clear(&whole);
+  shooting_solution_clear(&s);
+  shooting_solution_clear(&whole);
 }
 
 int main(void) {

@@ -2,8 +2,8 @@
  * states at T/2, and starts from which Newton's method runs away. */
 #include "support.h"
 
-#include "witness/recorded.h"
-#include "witness/shot.h"
+#include "witness/recorded_run.h"
+#include "witness/shooting_solution.h"
 
 static const double turn = 6.283185307179586;
 
@@ -21,13 +21,13 @@ static void even_motions_that_turn_beyond_what_they_hit_elsewhere_are_inadmissib
                                           .at_half = &wall,
                                           .half_count = half,
                                           .flow = ric_flow_options_default()};
-    shot s = shot_at(lattice_system(&lattice, &obstacle, 1), &problem);
-    shot_guess(&s, &q, &u, NULL, period);
-    shot_solve(&s);
+    shooting_solution s = shooting_solution_of_system(lattice_system(&lattice, &obstacle, 1), &problem);
+    shooting_solution_guess(&s, &q, &u, NULL, period);
+    shooting_solution_solve(&s);
     assert_close(half ? s.orbit.q[0] : s.orbit.q_half[0], 1 / cos(0.3), 1e-11);
     assert_int_equal(s.orbit.outcome, RIC_INADMISSIBLE);
     assert_non_null(strstr(s.orbit.reason, "smallest gap -0.046751"));
-    shot_clear(&s);
+    shooting_solution_clear(&s);
   }
 }
 
@@ -38,14 +38,14 @@ static ric_system *two_floors(void) {
   return lattice_system(&lattice, floors, 2);
 }
 
-static void assert_goes_through_the_upper_floor(shot *s, double time) {
+static void assert_goes_through_the_upper_floor(shooting_solution *s, double time) {
   char word[64];
   snprintf(word, sizeof word, "%s its floor (obstacle 0) at t = %.4g", time > 0 ? "passes" : "is below", time);
-  shot_solve(s);
+  shooting_solution_solve(s);
   assert_int_equal(s->orbit.outcome, RIC_INADMISSIBLE);
   if (!strstr(s->orbit.reason, "smallest gap -0.2") || !strstr(s->orbit.reason, word))
     fail_msg("\"%s\" does not say \"%s\"", s->orbit.reason, word);
-  shot_clear(s);
+  shooting_solution_clear(s);
 }
 
 /* At 0 or T/2 of an even motion, the upper floor hit at the other end, or in between. */
@@ -60,8 +60,8 @@ static void even_motions_thrown_back_beyond_what_they_hit_elsewhere_are_inadmiss
                                        .at_half = low_first ? &upper : &lower,
                                        .half_count = 1,
                                        .flow = ric_flow_options_default()};
-    shot s = shot_at(two_floors(), &ends);
-    shot_guess(&s, &q, &u, NULL, 9);
+    shooting_solution s = shooting_solution_of_system(two_floors(), &ends);
+    shooting_solution_guess(&s, &q, &u, NULL, 9);
     assert_goes_through_the_upper_floor(&s, low_first ? 0 : 4.5);
   }
   const ric_shooting_problem between = {.kind = RIC_MOTION_EVEN,
@@ -70,8 +70,8 @@ static void even_motions_thrown_back_beyond_what_they_hit_elsewhere_are_inadmiss
                                         .sequence = &upper,
                                         .count = 1,
                                         .flow = ric_flow_options_default()};
-  shot s = shot_at(two_floors(), &between);
-  shot_guess(&s, &q, &u, &time, 2 * 6.4);
+  shooting_solution s = shooting_solution_of_system(two_floors(), &between);
+  shooting_solution_guess(&s, &q, &u, &time, 2 * 6.4);
   assert_goes_through_the_upper_floor(&s, 0);
 }
 
@@ -83,14 +83,14 @@ static void motions_thrown_back_beyond_what_they_hit_elsewhere_are_inadmissible(
     const ric_shooting_problem problem = {
         .kind = RIC_MOTION_CONSERVATIVE, .sequence = hits + low_first, .count = 2, .flow = ric_flow_options_default()};
     const double q = low_first ? -1.2 : -1, u = 1.2, times[2] = {0, 4.5};
-    shot s = shot_at(two_floors(), &problem);
-    shot_guess(&s, &q, &u, times, 9);
+    shooting_solution s = shooting_solution_of_system(two_floors(), &problem);
+    shooting_solution_guess(&s, &q, &u, times, 9);
     assert_goes_through_the_upper_floor(&s, low_first ? 0 : 4.5);
   }
 }
 
 /* Two masses that share inertia: an impact of one turns the gap of the other around. */
-static shot shared_inertia(bool turned) {
+static shooting_solution shared_inertia(bool turned) {
   static const double mass[4] = {1, 0.5, 0.5, 1}, stiffness[4] = {2, 0, 0, 1};
   static const size_t hits[3] = {0, 1, 0};
   const ric_mck model = {.coordinates = 2, .mass = {.values = mass}, .stiffness = {.values = stiffness}};
@@ -103,37 +103,37 @@ static shot shared_inertia(bool turned) {
   ric_error error;
   if (ric_system_create_mck(&model, obstacles, 2, &system, &error) != RIC_OK)
     fail_msg("%s", error.message);
-  shot s = shot_at(system, &problem);
-  shot_guess(&s, q, u, times, 3.4);
+  shooting_solution s = shooting_solution_of_system(system, &problem);
+  shooting_solution_guess(&s, q, u, times, 3.4);
   return s;
 }
 
 static void verdicts_do_not_depend_on_where_the_motion_is_begun(void **state) {
   (void)state;
-  shot a = shared_inertia(false), b = shared_inertia(true);
-  shot_solve(&a);
+  shooting_solution a = shared_inertia(false), b = shared_inertia(true);
+  shooting_solution_solve(&a);
   memcpy(b.z, a.z + 4, 4 * sizeof *b.z);
   memcpy(b.z + 4, a.z, 4 * sizeof *b.z);
   b.z[8] = 3.4 - a.z[8];
-  shot_solve(&b);
+  shooting_solution_solve(&b);
   assert_close(a.orbit.energy, b.orbit.energy, 1e-12);
   assert_int_equal(a.orbit.outcome, RIC_INADMISSIBLE);
   assert_int_equal(b.orbit.outcome, RIC_INADMISSIBLE);
   assert_non_null(strstr(a.orbit.reason, "smallest gap -0.139"));
   assert_non_null(strstr(b.orbit.reason, "smallest gap -0.139"));
-  shot_clear(&a);
-  shot_clear(&b);
+  shooting_solution_clear(&a);
+  shooting_solution_clear(&b);
 }
 
 /* Of two impacts half a period apart the second one is not passed yet. */
 static void states_at_half_the_period_are_those_before_an_impact_there(void **state) {
   (void)state;
-  shot a = shared_inertia(false);
-  shot_solve(&a);
+  shooting_solution a = shared_inertia(false);
+  shooting_solution_solve(&a);
   assert_close(a.orbit.impact_time[0], 1.7, 1e-11); /* the second of the sequence is listed first */
   assert_close(a.orbit.q_half[1], 0.1, 1e-11);
   assert_close(a.orbit.v_half[1], a.orbit.gap_rate[0], 1e-11);
-  shot_clear(&a);
+  shooting_solution_clear(&a);
 }
 
 /* Impacts of two particles at one time, by a symmetry, are in order whichever comes first in rounding. */
@@ -146,16 +146,16 @@ static void impacts_of_one_time_are_in_order(void **state) {
   const ric_shooting_problem problem = {
       .kind = RIC_MOTION_CONSERVATIVE, .sequence = hits, .count = 2, .flow = ric_flow_options_default()};
   const double q[2] = {-0.5, -0.5}, u[2] = {0.9, 0.9}, times[2] = {0, 0};
-  shot s = shot_at(lattice_system(&lattice, obstacles, 2), &problem);
-  shot_guess(&s, q, u, times, 5);
-  shot_solve(&s);
+  shooting_solution s = shooting_solution_of_system(lattice_system(&lattice, obstacles, 2), &problem);
+  shooting_solution_guess(&s, q, u, times, 5);
+  shooting_solution_solve(&s);
   for (int sign = -1; sign <= 1; sign += 2) {
     s.z[8] = sign * 1e-14;
     assert_int_equal(ric_shooting_orbit(s.shooting, s.z, s.given, &s.orbit, NULL), RIC_OK);
     if (s.orbit.outcome != RIC_ADMISSIBLE)
       fail_msg("%s: %s", ric_outcome_name(s.orbit.outcome), s.orbit.reason);
   }
-  shot_clear(&s);
+  shooting_solution_clear(&s);
 }
 
 /* Of A cos(w t) on two masses that do not feel each other, and of a particle that is thrown up from a floor. */
@@ -172,22 +172,22 @@ static void amplitudes_are_those_of_the_whole_period(void **state) {
   lattice.force_sin = off;
   lattice.frequency = w;
   const ric_shooting_problem forced = {.kind = RIC_MOTION_FORCED, .flow = ric_flow_options_default()};
-  shot s = shot_at(lattice_system(&lattice, NULL, 0), &forced);
-  shot_guess(&s, q, u, NULL, turn / w);
-  shot_solve(&s);
+  shooting_solution s = shooting_solution_of_system(lattice_system(&lattice, NULL, 0), &forced);
+  shooting_solution_guess(&s, q, u, NULL, turn / w);
+  shooting_solution_solve(&s);
   assert_int_equal(ric_shooting_amplitude(s.shooting, s.z, s.given, &amplitude, NULL), RIC_OK);
   assert_close(amplitude, 0.3 / hypot(lag, drag), 1e-13);
-  shot_clear(&s);
+  shooting_solution_clear(&s);
   lattice = ric_lattice_default(1, RIC_ENDS_FREE);
   const ric_shooting_problem even = {
       .kind = RIC_MOTION_EVEN, .at_half = &floor, .half_count = 1, .flow = ric_flow_options_default()};
   for (double period = 3.3; period < 6.2; period += 0.7) { /* -cos(t - T/2) / cos(T/2), about t = T/2 of this motion */
-    s = shot_at(lattice_system(&lattice, &obstacle, 1), &even);
-    shot_guess(&s, q, u, NULL, period);
-    shot_solve(&s);
+    s = shooting_solution_of_system(lattice_system(&lattice, &obstacle, 1), &even);
+    shooting_solution_guess(&s, q, u, NULL, period);
+    shooting_solution_solve(&s);
     assert_int_equal(ric_shooting_amplitude(s.shooting, s.z, s.given, &amplitude, NULL), RIC_OK);
     assert_close(amplitude, -1 / cos(period / 2), 1e-12 * amplitude);
-    shot_clear(&s);
+    shooting_solution_clear(&s);
   }
 }
 
@@ -205,12 +205,12 @@ static void states_are_those_of_the_whole_period(void **state) {
       .kind = RIC_MOTION_EVEN, .at_start = &wall, .start_count = 1, .flow = ric_flow_options_default()};
   const ric_shooting_problem whole = {
       .kind = RIC_MOTION_CONSERVATIVE, .sequence = &wall, .count = 1, .flow = ric_flow_options_default()};
-  shot a = shot_at(lattice_system(&lattice, &obstacle, 1), &even);
-  shot b = shot_at(lattice_system(&lattice, &obstacle, 1), &whole);
-  shot_guess(&a, guess, speed, NULL, 6.8);
-  shot_guess(&b, guess, speed, &time, 6.8);
-  shot_solve(&a);
-  shot_solve(&b);
+  shooting_solution a = shooting_solution_of_system(lattice_system(&lattice, &obstacle, 1), &even);
+  shooting_solution b = shooting_solution_of_system(lattice_system(&lattice, &obstacle, 1), &whole);
+  shooting_solution_guess(&a, guess, speed, NULL, 6.8);
+  shooting_solution_guess(&b, guess, speed, &time, 6.8);
+  shooting_solution_solve(&a);
+  shooting_solution_solve(&b);
   for (size_t count = 2; count < 40; count += 7) {
     double q[2][40][2], v[2][40][2];
     assert_int_equal(ric_shooting_states(a.shooting, a.z, a.given, count, q[0][0], v[0][0], NULL), RIC_OK);
@@ -224,8 +224,8 @@ static void states_are_those_of_the_whole_period(void **state) {
     assert_close(v[0][count - 1][1], -v[0][0][1], 1e-12); /* before the impact */
   }
   assert_int_equal(ric_shooting_states(a.shooting, a.z, a.given, 1, a.z, a.z, NULL), RIC_EINVAL);
-  shot_clear(&a);
-  shot_clear(&b);
+  shooting_solution_clear(&a);
+  shooting_solution_clear(&b);
 }
 
 int main(void) {

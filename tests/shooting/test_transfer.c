@@ -2,7 +2,7 @@
  * composition, and by their eigenvalues over a period. */
 #include "support.h"
 
-#include "witness/shot.h"
+#include "witness/shooting_solution.h"
 
 enum { N = 4 };
 
@@ -23,27 +23,27 @@ static ric_system *two_masses(const double *force) {
 static const double period = 6.283185307179586;
 
 /* A forced motion that hits the wall once in a period: where runs settle. */
-static shot forced_motion(size_t pieces) {
+static shooting_solution forced_motion(size_t pieces) {
   static const double force[2] = {0.2, 0.9};
   static const size_t wall = 0;
   const ric_shooting_problem problem = {
       .kind = RIC_MOTION_FORCED, .sequence = &wall, .count = 1, .pieces = pieces, .flow = ric_flow_options_default()};
-  shot s = shot_at(two_masses(force), &problem);
+  shooting_solution s = shooting_solution_of_system(two_masses(force), &problem);
   const double q[2] = {0.1, 1}, u[2] = {0.1, -0.5}, time = 0.5;
-  shot_guess(&s, q, u, &time, period);
-  shot_solve(&s);
+  shooting_solution_guess(&s, q, u, &time, period);
+  shooting_solution_solve(&s);
   assert_int_equal(s.orbit.outcome, RIC_ADMISSIBLE);
   return s;
 }
 
-static void find(shot *s, double from, double to, double *x, double *matrix) {
+static void find(shooting_solution *s, double from, double to, double *x, double *matrix) {
   ric_error error;
   if (ric_shooting_transfer(s->shooting, s->z, s->given, from, to, x, matrix, &error) != RIC_OK)
     fail_msg("%s", error.message);
 }
 
 /* The same by a trajectory. */
-static void run(const shot *s, double from, double to, const double *x, double *matrix) {
+static void run(const shooting_solution *s, double from, double to, const double *x, double *matrix) {
   ric_trajectory *t = NULL;
   ric_run run;
   double dq[2 * N] = {1, 0, 0, 0, 0, 1, 0, 0}, du[2 * N] = {0, 0, 1, 0, 0, 0, 0, 1};
@@ -60,7 +60,7 @@ static void run(const shot *s, double from, double to, const double *x, double *
 static void they_are_those_of_event_driven_runs(void **state) {
   (void)state;
   for (size_t pieces = 1; pieces <= 3; pieces += 2) {
-    shot s = forced_motion(pieces);
+    shooting_solution s = forced_motion(pieces);
     const double hit = s.orbit.impact_time[0];
     const double times[][2] = {{hit - 1, hit + 1},
                                {hit + 0.5, hit + 2},
@@ -75,13 +75,13 @@ static void they_are_those_of_event_driven_runs(void **state) {
       for (size_t i = 0; i < N * N; i++)
         assert_close(found[i], expected[i], 1e-9);
     }
-    shot_clear(&s);
+    shooting_solution_clear(&s);
   }
 }
 
 static void parts_of_a_period_make_the_whole(void **state) {
   (void)state;
-  shot s = forced_motion(1);
+  shooting_solution s = forced_motion(1);
   double x[N], after[N], first[N * N], second[N * N], whole[N * N];
   const double from = 2, middle = s.orbit.impact_time[0] + period, to = from + period;
   find(&s, from, middle, x, first); /* through the impact at its end */
@@ -95,13 +95,13 @@ static void parts_of_a_period_make_the_whole(void **state) {
         sum += second[i * N + l] * first[l * N + j];
       assert_close(sum, whole[i * N + j], 1e-12);
     }
-  shot_clear(&s);
+  shooting_solution_clear(&s);
 }
 
 /* From any time: the multipliers of the motion. */
 static void over_a_period_they_have_the_multipliers(void **state) {
   (void)state;
-  shot s = forced_motion(1);
+  shooting_solution s = forced_motion(1);
   ric_multipliers mu, found;
   double x[N], matrix[N * N];
   assert_int_equal(ric_multipliers_init(&mu, N, NULL), RIC_OK);
@@ -115,13 +115,13 @@ static void over_a_period_they_have_the_multipliers(void **state) {
   }
   ric_multipliers_clear(&mu);
   ric_multipliers_clear(&found);
-  shot_clear(&s);
+  shooting_solution_clear(&s);
 }
 
 /* Nearer to the end of a piece, or of the period, than rounding tells. */
 static void states_at_ends_of_pieces_are_found(void **state) {
   (void)state;
-  shot s = forced_motion(3);
+  shooting_solution s = forced_motion(3);
   const double hit = s.orbit.impact_time[0], nearly[] = {0, 1e-13, -1e-13, 1e-15, -1e-15, 3e-12, -3e-12};
   for (size_t k = 0; k < 3; k++)
     for (size_t i = 0; i < sizeof nearly / sizeof *nearly; i++) {
@@ -136,12 +136,12 @@ static void states_at_ends_of_pieces_are_found(void **state) {
       for (size_t j = 0; j < N * N; j++)
         assert_close(matrix[j], j % (N + 1) == 0 ? 1 : 0, 1e-9);
     }
-  shot_clear(&s);
+  shooting_solution_clear(&s);
 }
 
 static void times_out_of_order_are_refused(void **state) {
   (void)state;
-  shot s = forced_motion(1);
+  shooting_solution s = forced_motion(1);
   const double times[][2] = {{1, 0.5}, {0, 7}, {NAN, 1}, {0, NAN}, {-INFINITY, 0}, {INFINITY, INFINITY}};
   double x[N];
   ric_error error;
@@ -150,7 +150,7 @@ static void times_out_of_order_are_refused(void **state) {
                      RIC_EINVAL);
     assert_non_null(strstr(error.message, "expected from <= to"));
   }
-  shot_clear(&s);
+  shooting_solution_clear(&s);
 }
 
 int main(void) {

@@ -83,7 +83,8 @@ typedef struct ric_orbit {
   size_t impacts;          /* m */
   double *q, *v;           /* [n], [speeds] state at t = 0+ */
   double *q_half, *v_half; /* [n], [speeds] state at t = (T/2)-, before the impacts there */
-  double *impulse;         /* [m] in the order of the pattern; velocity jumps for masses 1; NaN for impact maps */
+  double *impulse;         /* [m] in the order of the pattern, along the gap: > 0 if the obstacle pushes;
+                              velocity jumps for masses 1; NaN for impact maps */
   double *impact_time;     /* [m] in [0, T) */
   double *gap_rate;        /* [m] before the impact */
   size_t *impact_obstacle; /* [m] obstacle of the system; for chains the particle */

@@ -1,9 +1,9 @@
-#include "solved.h"
+#include "solved_orbit.h"
 
 #include "support.h"
 
-solved solved_by(ric_orbit_method method, scenario s) {
-  solved x = {.scenario = s};
+solved_orbit solve_orbit(ric_orbit_method method, scenario s) {
+  solved_orbit x = {.scenario = s};
   ric_orbit_options options = ric_orbit_options_default();
   ric_error error = {0};
   options.method = method;
@@ -14,25 +14,25 @@ solved solved_by(ric_orbit_method method, scenario s) {
   return x;
 }
 
-void solved_clear(solved *x) {
+void solved_orbit_clear(solved_orbit *x) {
   ric_orbit_clear(&x->orbit);
   ric_orbit_solver_destroy(&x->solver);
   scenario_clear(&x->scenario);
 }
 
-int solved_has_state(const solved *x) {
+int solved_orbit_has_state(const solved_orbit *x) {
   return x->orbit.outcome != RIC_SINGULAR && x->orbit.outcome != RIC_FAILED;
 }
 
-double solved_scale(const solved *x) {
+double solved_orbit_scale(const solved_orbit *x) {
   double largest = 0;
   for (size_t i = 0; i < x->orbit.particles; i++)
     largest = fmax(largest, fmax(fabs(x->orbit.q[i]), fabs(x->orbit.q_half[i])));
   return largest;
 }
 
-double agreement(const solved *dense) {
-  double largest = fmax(1, solved_scale(dense));
+double method_tolerance(const solved_orbit *dense) {
+  double largest = fmax(1, solved_orbit_scale(dense));
   for (size_t i = 0; i < dense->orbit.particles; i++)
     largest = fmax(largest, fmax(fabs(dense->orbit.v[i]), fabs(dense->orbit.v_half[i])));
   return 1e-12 * fmax(1, dense->orbit.condition / 100) * largest;
@@ -54,7 +54,7 @@ double state_difference(const ric_orbit *a, const ric_orbit *b) {
   return fmax(fmax(at_start, at_half), difference(a->impulse, b->impulse, a->impacts));
 }
 
-double impulse_of(const solved *x, size_t particle) {
+double impulse_of(const solved_orbit *x, size_t particle) {
   for (size_t r = 0; r < x->orbit.impacts; r++)
     if (ric_pattern_impact(x->scenario.pattern, r) == particle)
       return x->orbit.impulse[r];

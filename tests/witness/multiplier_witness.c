@@ -1,9 +1,9 @@
-#include "multiplied.h"
+#include "multiplier_witness.h"
 
 #include "dense_monodromy.h"
 #include "support.h"
 
-ric_multipliers multipliers_by(ric_multiplier_method method, const solved *x, bool on_circle) {
+ric_multipliers multipliers_by(ric_multiplier_method method, const solved_orbit *x, bool on_circle) {
   ric_orbit_multiplier_options options = ric_orbit_multiplier_options_default();
   ric_multipliers m;
   ric_error error = {0};
@@ -16,7 +16,7 @@ ric_multipliers multipliers_by(ric_multiplier_method method, const solved *x, bo
   return m;
 }
 
-ric_multipliers multipliers_dense(const solved *x) {
+ric_multipliers multipliers_dense(const solved_orbit *x) {
   ric_multipliers m;
   double *M = dense_monodromy(&x->scenario.chain, x->scenario.pattern, &x->orbit);
   assert_int_equal(ric_multipliers_init(&m, 2 * x->orbit.particles, NULL), RIC_OK);

@@ -1,8 +1,8 @@
-#include "grazed.h"
+#include "grazing_family.h"
 
 #include "support.h"
 
-ric_family_options grazed_within(double low, double high, double step) {
+ric_family_options grazing_family_options(double low, double high, double step) {
   ric_family_options options = ric_family_options_default();
   options.multipliers = false;
   options.curve.newton_tol = 1e-10;
@@ -12,9 +12,10 @@ ric_family_options grazed_within(double low, double high, double step) {
   return options;
 }
 
-grazed grazed_from(const ric_family_problem *problem, const ric_family_options *options, double parameter,
-                   const double *q, const double *u, const double *times, double period) {
-  grazed g = {.from = parameter};
+grazing_family grazing_family_from(const ric_family_problem *problem, const ric_family_options *options,
+                                   double parameter, const double *q, const double *u, const double *times,
+                                   double period) {
+  grazing_family g = {.from = parameter};
   ric_error error;
   if (ric_family_create(problem, options, &g.family, &error) != RIC_OK)
     fail_msg("%s", error.message);
@@ -26,19 +27,19 @@ grazed grazed_from(const ric_family_problem *problem, const ric_family_options *
   return g;
 }
 
-void grazed_clear(grazed *g) {
+void grazing_family_clear(grazing_family *g) {
   ric_grazing_clear(&g->grazing);
   ric_family_destroy(&g->family);
   free(g->z);
 }
 
-void grazed_find(grazed *g) {
+void grazing_family_find(grazing_family *g) {
   ric_error error;
   if (ric_grazing_find(g->family, g->z, g->from, NULL, &g->grazing, &error) != RIC_OK)
     fail_msg("%s", error.message);
 }
 
-ric_grazing_map grazed_map(grazed *g, const ric_grazing_plane *plane) {
+ric_grazing_map grazing_family_map(grazing_family *g, const ric_grazing_plane *plane) {
   ric_grazing_map map;
   ric_error error;
   const size_t size = ric_grazing_coordinates(&g->grazing, ric_family_shooting(g->family));

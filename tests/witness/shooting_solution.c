@@ -1,4 +1,4 @@
-#include "shot.h"
+#include "shooting_solution.h"
 
 #include "support.h"
 
@@ -7,8 +7,8 @@ static void check(ric_status status, const ric_error *error) {
     fail_msg("%s", error->message);
 }
 
-shot shot_at(ric_system *system, const ric_shooting_problem *problem) {
-  shot s = {.system = system};
+shooting_solution shooting_solution_of_system(ric_system *system, const ric_shooting_problem *problem) {
+  shooting_solution s = {.system = system};
   ric_error error;
   check(ric_shooting_create(system, problem, &s.shooting, &error), &error);
   s.unknowns = ric_shooting_unknowns(s.shooting);
@@ -18,28 +18,29 @@ shot shot_at(ric_system *system, const ric_shooting_problem *problem) {
   return s;
 }
 
-void shot_clear(shot *s) {
+void shooting_solution_clear(shooting_solution *s) {
   ric_shooting_destroy(&s->shooting);
   ric_system_destroy(&s->system);
   ric_orbit_clear(&s->orbit);
   free(s->z);
-  *s = (shot){0};
+  *s = (shooting_solution){0};
 }
 
-void shot_guess(shot *s, const double *q, const double *u, const double *times, double period) {
+void shooting_solution_guess(shooting_solution *s, const double *q, const double *u, const double *times,
+                             double period) {
   ric_error error;
   check(ric_shooting_guess(s->shooting, q, u, times, period, s->z, &error), &error);
   s->given = period;
 }
 
-void shot_solve(shot *s) {
+void shooting_solution_solve(shooting_solution *s) {
   ric_error error;
   check(ric_shooting_solve(s->shooting, s->z, s->given, 0, &s->iterations, &error), &error);
   check(ric_shooting_orbit(s->shooting, s->z, s->given, &s->orbit, &error), &error);
 }
 
 /* Central differences of F along one number. */
-static void slope(shot *s, double *number, double step, double *below, double *above) {
+static void slope(shooting_solution *s, double *number, double step, double *below, double *above) {
   ric_error error;
   double kept = *number;
   *number = kept + step;
@@ -51,7 +52,7 @@ static void slope(shot *s, double *number, double step, double *below, double *a
     above[i] = (above[i] - below[i]) / (2 * step);
 }
 
-double shot_jacobian_error(shot *s, double step) {
+double shooting_jacobian_error(shooting_solution *s, double step) {
   size_t n = s->unknowns;
   double *J = malloc((n * n + 4 * n) * sizeof *J), worst = 0, size = 1;
   assert_non_null(J);
@@ -70,7 +71,7 @@ double shot_jacobian_error(shot *s, double step) {
   return worst / size;
 }
 
-shot shot_of_chain(const ric_chain *chain, const ric_pattern *pattern) {
+shooting_solution shooting_solution_of_chain(const ric_chain *chain, const ric_pattern *pattern) {
   size_t n = chain->particles, count[2] = {0}, *hit = malloc(2 * n * sizeof *hit);
   ric_system *system = NULL;
   ric_error error;
@@ -86,7 +87,7 @@ shot shot_of_chain(const ric_chain *chain, const ric_pattern *pattern) {
                                         .at_half = hit + n,
                                         .half_count = count[1],
                                         .flow = ric_flow_options_default()};
-  shot s = shot_at(system, &problem);
+  shooting_solution s = shooting_solution_of_system(system, &problem);
   free(hit);
   return s;
 }

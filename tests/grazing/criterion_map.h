@@ -1,6 +1,6 @@
-/* Small grazing maps given by their numbers, in any coordinates, and their criterion. */
-#ifndef RICOCHET_JUDGED_MAP_H
-#define RICOCHET_JUDGED_MAP_H
+/* Small return maps near grazing, given by their numbers in any coordinates, and their criterion. */
+#ifndef RICOCHET_TESTS_CRITERION_MAP_H
+#define RICOCHET_TESTS_CRITERION_MAP_H
 
 #include <ricochet/grazing_criterion.h>
 
@@ -19,10 +19,10 @@ void change_coordinates(ric_grazing_map *map, const double *S);
 /** Rows of a random matrix times powers of ten up to 10^+-decades. */
 void random_coordinates(random_source *source, double decades, size_t n, double *S);
 
-/** Its criterion with the defaults, whose parts must agree with its verdict. */
-ric_grazing_criterion find(const ric_grazing_map *map);
+/** Its criterion with the default options; asserts that its fields agree with the verdict. */
+ric_grazing_criterion find_criterion(const ric_grazing_map *map);
 
-/** The same of a map that is not needed any more, and freed. */
-ric_grazing_criterion find_once(ric_grazing_map map);
+/** The same, and frees the map. */
+ric_grazing_criterion find_criterion_once(ric_grazing_map map);
 
 #endif

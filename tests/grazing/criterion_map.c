@@ -1,4 +1,4 @@
-#include "judged_map.h"
+#include "criterion_map.h"
 
 #include "support.h"
 
@@ -88,7 +88,7 @@ void random_coordinates(random_source *source, double decades, size_t n, double 
   }
 }
 
-ric_grazing_criterion find(const ric_grazing_map *map) {
+ric_grazing_criterion find_criterion(const ric_grazing_map *map) {
   ric_grazing_criterion c;
   ric_error error;
   if (ric_grazing_criterion_find(map, NULL, &c, NULL, 0, NULL, &error) != RIC_OK)
@@ -100,8 +100,8 @@ ric_grazing_criterion find(const ric_grazing_map *map) {
   return c;
 }
 
-ric_grazing_criterion find_once(ric_grazing_map map) {
-  ric_grazing_criterion c = find(&map);
+ric_grazing_criterion find_criterion_once(ric_grazing_map map) {
+  ric_grazing_criterion c = find_criterion(&map);
   ric_grazing_map_clear(&map);
   return c;
 }

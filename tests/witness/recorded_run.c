@@ -1,9 +1,9 @@
-#include "recorded.h"
+#include "recorded_run.h"
 
 #include "support.h"
 
 static int keep(const ric_event *event, void *user) {
-  recorded *r = user;
+  recorded_run *r = user;
   if (r->count == r->capacity) {
     r->capacity = r->capacity ? 2 * r->capacity : 64;
     r->events = realloc(r->events, r->capacity * sizeof *r->events);
@@ -26,9 +26,9 @@ static void require(ric_status status, const ric_error *error) {
     fail_msg("%s", error->message);
 }
 
-recorded record(const ric_system *system, const ric_trajectory_options *options, const double *q, const double *u,
-                double end) {
-  recorded r = {.coordinates = ric_system_coordinates(system), .speeds = ric_system_speeds(system)};
+recorded_run record_run(const ric_system *system, const ric_trajectory_options *options, const double *q,
+                        const double *u, double end) {
+  recorded_run r = {.coordinates = ric_system_coordinates(system), .speeds = ric_system_speeds(system)};
   ric_observer observer = {.event = keep, .user = &r};
   ric_trajectory *trajectory = NULL;
   ric_error error = {0};
@@ -41,21 +41,21 @@ recorded record(const ric_system *system, const ric_trajectory_options *options,
   return r;
 }
 
-void recorded_clear(recorded *r) {
+void recorded_run_clear(recorded_run *r) {
   free(r->events);
   free(r->q);
   free(r->u);
-  *r = (recorded){0};
+  *r = (recorded_run){0};
 }
 
-size_t recorded_impacts(const recorded *r) {
+size_t recorded_run_impacts(const recorded_run *r) {
   size_t impacts = 0;
   for (size_t i = 0; i < r->count; i++)
     impacts += ric_event_jumps(&r->events[i]) != 0;
   return impacts;
 }
 
-const ric_event *recorded_first(const recorded *r, ric_event_kind kind) {
+const ric_event *recorded_run_first(const recorded_run *r, ric_event_kind kind) {
   for (size_t i = 0; i < r->count; i++)
     if (r->events[i].kind == kind)
       return &r->events[i];
@@ -66,7 +66,7 @@ static int is_rest(const ric_event *event) {
   return event->kind == RIC_EVENT_REST || event->kind == RIC_EVENT_RELEASE;
 }
 
-size_t recorded_rests_agree(const recorded *r, const recorded *witness, double tolerance) {
+size_t recorded_runs_stick_alike(const recorded_run *r, const recorded_run *witness, double tolerance) {
   size_t next = 0, compared = 0;
   assert_true(witness->count > r->count);
   for (size_t i = 0; i < r->count; i++) {
@@ -89,7 +89,7 @@ static double difference(const double *a, const double *b, size_t count) {
   return largest;
 }
 
-double recorded_difference(const recorded *a, const recorded *b) {
+double recorded_runs_difference(const recorded_run *a, const recorded_run *b) {
   return fmax(difference(a->q, b->q, a->coordinates), difference(a->u, b->u, a->speeds));
 }
 
@@ -97,16 +97,16 @@ double growth_of(const ric_system *system, const double *q, const double *u, dou
   size_t n = ric_system_coordinates(system), m = ric_system_speeds(system);
   double shift = 1e-8, sum = 0, *moved = calloc(n + m, sizeof *moved);
   assert_non_null(moved);
-  recorded there = record(system, NULL, q, u, end);
+  recorded_run there = record_run(system, NULL, q, u, end);
   for (size_t k = 0; k < n + m; k++) {
     memcpy(moved, q, n * sizeof *q);
     memcpy(moved + n, u, m * sizeof *u);
     moved[k] += shift;
-    recorded near = record(system, NULL, moved, moved + n, end);
-    sum += recorded_difference(&near, &there) / shift;
-    recorded_clear(&near);
+    recorded_run near = record_run(system, NULL, moved, moved + n, end);
+    sum += recorded_runs_difference(&near, &there) / shift;
+    recorded_run_clear(&near);
   }
-  recorded_clear(&there);
+  recorded_run_clear(&there);
   free(moved);
   return fmax(sum, 1);
 }
