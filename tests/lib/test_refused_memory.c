@@ -9,8 +9,8 @@
 
 #ifdef ALLOCATIONS_ARE_COUNTED
 
-/* The head of a workspace that GSL keeps when there is no memory for the rest. */
-enum { GSL_LEAVES_BEHIND = 128, MOST_REFUSALS = 20000 };
+/* Heads of workspaces that GSL keeps when there is no memory for the rest. */
+enum { GSL_LEAVES_BEHIND = 256, MOST_REFUSALS = 20000 };
 
 typedef ric_status work(void *user);
 
