@@ -2,7 +2,7 @@
 #include "support.h"
 
 #include "witness/shooting_solution.h"
-#include "witness/solved.h"
+#include "witness/solved_orbit.h"
 
 static const double turn = 6.283185307179586;
 
@@ -126,7 +126,7 @@ static void even_guesses_of_chains_are_their_orbits(void **state) {
   enum { N = 6 };
   const size_t starts[2] = {0, 3}, halves[1] = {4};
   ric_obstacle floors[N];
-  solved exact = solved_by(RIC_METHOD_IMPULSE, scenario_word("s..sh.", 1, RIC_ENDS_FIXED, 0.1, 5.5));
+  solved_orbit exact = solve_orbit(RIC_METHOD_IMPULSE, scenario_word("s..sh.", 1, RIC_ENDS_FIXED, 0.1, 5.5));
   const ric_lattice lattice = ric_lattice_of_chain(&exact.scenario.chain);
   const ric_shooting_problem motion = even(starts, 2, halves, 1);
   const ric_guess_problem problem = {&lattice, floors, N, &motion};
@@ -140,7 +140,7 @@ static void even_guesses_of_chains_are_their_orbits(void **state) {
     assert_close(guess.v[i], exact.orbit.v[i], 1e-10);
   }
   ric_guess_clear(&guess);
-  solved_clear(&exact);
+  solved_orbit_clear(&exact);
 }
 
 /* A ring of nonlinear springs, one particle of which hits its floor. */
