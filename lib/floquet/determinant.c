@@ -8,7 +8,6 @@
 
 #include "multipliers.h"
 #include "numeric/constants.h"
-#include "winding.h"
 
 /* Arcs of this length count as points. With a pole on or next to an arc, rounding is 1e-16 over the distance of alpha,
  * and the second value is the shortest distance. */

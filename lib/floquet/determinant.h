@@ -3,6 +3,7 @@
 #ifndef RICOCHET_DETERMINANT_H
 #define RICOCHET_DETERMINANT_H
 
+#include "ricochet/multipliers.h"
 #include "ricochet/orbit_multipliers.h"
 #include "ricochet/status.h"
 #include "secular.h"
@@ -26,10 +27,40 @@
  *  @param depth  how often arcs may be divided to separate modes of different signs */
 size_t unit_circle_count(secular *s, double from, int depth);
 
+/* Multipliers outside the circle, counted by the argument principle.
+ *
+ * f has its poles on the circle and tends to 1 far away, so the winding number of f along |mu| = exp(r), r > 0, is
+ * minus the number of multipliers outside; that of g = f / (alpha - 1) is less by one. In zeta = log mu the contour is
+ * a straight line, and conjugate symmetry leaves 0 <= Im zeta <= pi.
+ *
+ * Steps are bisected until a step is shorter than 0.7 times its distance from the nearest pole (a pole and a zero on
+ * both sides of the contour would cancel at a distance), and until log g changes by less than a quarter turn in either
+ * half of it, nearly equally in both. The modulus is used, too: zeros close to the contour between two points may turn
+ * the phase by whole turns, but they change the modulus at the next point. */
+
+/** Number of multipliers with modulus above exp(radius), radius > 0.
+ *  @returns false if a multiplier lies on the contour */
+bool winding_outside(secular *s, double radius, size_t *outside);
+
+/** Number of zeros of g in a rectangle of zeta to the right of the circle. @returns as winding_outside */
+bool winding_box(secular *s, double complex low, double complex high, size_t *zeros);
+
+/* The multipliers outside the unit circle, one by one.
+ *
+ * Rectangles of zeta = log mu are divided until they hold one zero of g each, which the secant method then finds, or
+ * until they are too small to divide: multipliers that coincide by symmetry. */
+
+/** Finds the multipliers with modulus above exp(low) and below exp(high), which may be infinite.
+ *  @param expected  their number; other divisions are tried if some are missing
+ *  @param mu  [room]; both of a conjugate pair are stored
+ *  @param count  set to the number found, at most `room` */
+void multipliers_outside_find(secular *s, double low, double high, size_t expected, ric_complex *mu, size_t room,
+                              size_t *count);
+
 /* The multipliers of an orbit by its determinant.
  *
  * Two counts decide: a lower bound of the pairs on the circle by signature, and the number outside of
- * |mu| = 1 + d by winding (winding.h), with d = 0.1, 1e-3 and the band. If they add up to n, every multiplier is
+ * |mu| = 1 + d by winding (winding.c), with d = 0.1, 1e-3 and the band. If they add up to n, every multiplier is
  * accounted for: `stable` is then certified. If they do not, even at the band and after a search of the circle, and
  * nothing is outside, the remaining multipliers lie within the band or on the circle: `undecided`. */
 

@@ -1,5 +1,5 @@
 /* Multipliers outside the unit circle: counted by winding numbers, and located. */
-#include "winding.h"
+#include "determinant.h"
 
 #include <math.h>
 

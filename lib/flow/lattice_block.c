@@ -1,5 +1,5 @@
 /* The Taylor recurrence of a piece of a lattice: for loops over columns, and for a few particles. */
-#include "lattice_block.h"
+#include "lattice_series.h"
 
 #include <string.h>
 

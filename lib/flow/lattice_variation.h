@@ -44,7 +44,7 @@ void lattice_variation_stiffen(lattice_variation *variation, const lattice_conta
 /** Propagates tangent vectors to the end of the accepted part. @param held  held coordinates */
 void lattice_variation_transport(lattice_variation *variation, const lattice_contacts *held, const tangents *d);
 
-/* Data shared with lattice_lanes.h. */
+/* Data shared with lattice_lanes.inc. */
 
 enum { LEVELS = 4 /* in use at a time */ };
 

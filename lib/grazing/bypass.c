@@ -6,7 +6,7 @@
 
 #include "impact/impact_law.h"
 #include "impact/locate.h"
-#include "local.h"
+#include "grazing.h"
 #include "numeric/vector.h"
 #include "shooting/arcs.h"
 

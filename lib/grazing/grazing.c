@@ -6,7 +6,7 @@
 
 #include "family/family.h"
 #include "ricochet/grazing.h"
-#include "section.h"
+#include "grazing.h"
 #include "shooting/shooting.h"
 
 /* Minima of the gap of a motion. */

@@ -1,5 +1,5 @@
 /* The coefficients of grazing at a state. */
-#include "local.h"
+#include "grazing.h"
 
 #include <float.h>
 #include <math.h>

@@ -1,5 +1,5 @@
 /* The coefficients of the return map on a section, to first and second order. */
-#include "section.h"
+#include "grazing.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -5,7 +5,6 @@
 
 #include "floquet/determinant.h"
 #include "floquet/orbit_multipliers.h"
-#include "floquet/winding.h"
 #include "scenario/scenario.h"
 
 /* An orbit with its determinant and its reduced matrix. */
