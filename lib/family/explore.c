@@ -1,4 +1,4 @@
-/* Exploring: segments of families, one after the other. */
+/* Exploration of families: segments are followed one after the other. */
 #include "ricochet/explore.h"
 
 #include <math.h>
@@ -8,17 +8,17 @@
 
 #include "family.h"
 
-/* A segment that waits to be followed, or was. */
+/* A segment that is queued, followed or done. */
 typedef struct segment {
-  ric_explore_segment view; /* what the visitor sees of it */
-  bool owned;               /* its family was made here */
-  double *z;                /* [unknowns]; NULL where there is none to begin with */
-  double *tangent;          /* [unknowns + 1]; NULL: of the start */
+  ric_explore_segment view; /* passed to the visitor */
+  bool owned;               /* the exploration made its family and destroys it */
+  double *z;                /* [unknowns]; NULL: no first point was found */
+  double *tangent;          /* [unknowns + 1]; NULL: it is computed at the start */
   double parameter;
-  ric_error why; /* why it could not be begun */
+  ric_error why; /* why there is no first point */
 } segment;
 
-/* Where families meet. */
+/* A point at which families meet. */
 typedef struct meeting {
   double parameter, period, energy;
 } meeting;
@@ -29,8 +29,8 @@ typedef struct exploration {
   segment *segments; /* [options.segments] */
   meeting *meetings; /* [options.segments] */
   size_t count, current, met, specials;
-  ric_status status; /* of what a callback came upon: RIC_OK, RIC_ENOMEM, RIC_ESTOPPED */
-  bool over;         /* the visitor has ended it */
+  ric_status status; /* RIC_OK, or the failure of a callback: RIC_ENOMEM, RIC_ESTOPPED */
+  bool over;         /* the visitor has asked to stop */
   ric_error *error;
 } exploration;
 
@@ -53,8 +53,8 @@ static bool is_near(double a, double b, double tolerance) {
   return fabs(a - b) <= tolerance * (1 + fabs(b));
 }
 
-/* Whether families met here before; notes it. */
-static bool was_met(exploration *e, const ric_family_point *point) {
+/* Whether families are known to meet at this point already; records it otherwise. */
+static bool is_known_meeting(exploration *e, const ric_family_point *point) {
   const meeting m = {point->parameter, point->orbit->period, point->orbit->energy};
   const double tolerance = e->options.same_point_tol;
   for (size_t i = 0; i < e->met; i++)
@@ -65,7 +65,7 @@ static bool was_met(exploration *e, const ric_family_point *point) {
   return false;
 }
 
-/* A segment that begins at the special point reported last. */
+/* Queues a segment that begins at the special point reported last. */
 static segment *add_segment(exploration *e, ric_explore_origin origin, const ric_family_point *point) {
   segment *s = &e->segments[e->count];
   *s = (segment){.view = {.index = e->count, .origin = origin, .special = e->specials - 1, .reason = ""},
@@ -74,8 +74,9 @@ static segment *add_segment(exploration *e, ric_explore_origin origin, const ric
   return s;
 }
 
-/* What led to a segment failed: it has no points; without memory, or stopped, the exploration ends. */
-static void keep_failure(exploration *e, segment *s, ric_status status) {
+/* A segment whose first point was not found has no points and keeps the reason. Without memory, or when stopped, the
+ * exploration ends. */
+static void record_failure(exploration *e, segment *s, ric_status status) {
   s->view.status = status;
   s->view.reason = s->why.message;
   if (status == RIC_ENOMEM || status == RIC_ESTOPPED)
@@ -92,7 +93,7 @@ static void add_other_family(exploration *e, ric_explore_origin origin, const ri
   const ric_status status = way(family, point, &junction, &s->why);
   if (status != RIC_OK) {
     ric_family_junction_clear(&junction);
-    keep_failure(e, s, status);
+    record_failure(e, s, status);
     return;
   }
   s->view.family = junction.family;
@@ -109,7 +110,7 @@ static double *copy_scaled(const double *numbers, size_t count, double factor) {
   return copy;
 }
 
-/* @param other  [unknowns + 1] tangent of the other branch  @param side  of which half */
+/* @param other  [unknowns + 1] tangent of the other branch @param side  1 or -1: the half along it or against it */
 static void add_half(exploration *e, const ric_family_point *point, const double *other, int side) {
   ric_family *family = e->segments[e->current].view.family;
   segment *s = add_segment(e, RIC_EXPLORE_BRANCH_POINT, point);
@@ -117,10 +118,10 @@ static void add_half(exploration *e, const ric_family_point *point, const double
   s->z = copy_scaled(point->z, point->unknowns, 1);
   s->tangent = copy_scaled(other, point->unknowns + 1, side);
   if (!s->z || !s->tangent)
-    keep_failure(e, s, ric_fail(&s->why, RIC_ENOMEM, "no memory for a point of %zu unknowns", point->unknowns));
+    record_failure(e, s, ric_fail(&s->why, RIC_ENOMEM, "no memory for a point of %zu unknowns", point->unknowns));
 }
 
-/* Both halves of the branch that crosses here. */
+/* Both halves of the branch that crosses the family here. */
 static void add_other_branch(exploration *e, const ric_family_point *point) {
   ric_family *family = e->segments[e->current].view.family;
   ric_error why = {0};
@@ -131,7 +132,7 @@ static void add_other_branch(exploration *e, const ric_family_point *point) {
   if (status != RIC_OK) {
     segment *s = add_segment(e, RIC_EXPLORE_BRANCH_POINT, point);
     s->why = why;
-    keep_failure(e, s, status);
+    record_failure(e, s, status);
   }
   for (int side = +1; status == RIC_OK && side >= -1 && e->count < e->options.segments; side -= 2)
     add_half(e, point, other, side);
@@ -145,7 +146,7 @@ static void add_families(exploration *e, const ric_family_point *point) {
   const bool crosses = e->options.cross && (kind == RIC_FAMILY_GRAZING || kind == RIC_FAMILY_IMPACT_LOST);
   const bool doubles = e->options.branches && kind == RIC_FAMILY_PERIOD_DOUBLING && !even;
   const bool switches = e->options.branches && kind == RIC_FAMILY_BRANCH_POINT;
-  if (e->count >= e->options.segments || !(crosses || doubles || switches) || was_met(e, point))
+  if (e->count >= e->options.segments || !(crosses || doubles || switches) || is_known_meeting(e, point))
     return;
   if (switches)
     add_other_branch(e, point);

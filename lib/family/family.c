@@ -1,4 +1,4 @@
-/* Families of motions: the equations of shooting along a parameter, and how a family is followed. */
+/* Families of motions: the equations of shooting along a parameter, and their continuation. */
 #include "family.h"
 
 #include <math.h>
@@ -8,15 +8,15 @@
 
 #include "ricochet/family.h"
 
-/* The walk along a family. */
+/* Continuation runs along a family. */
 
-/* A walk with the caller's callback. */
+/* A continuation run with the caller's callback. */
 typedef struct follower {
   ric_family *f;
   int (*point)(const ric_family_point *point, void *user);
   void *user;
   ric_curve_run *run;
-  ric_status status; /* of a look that failed in the callback */
+  ric_status status; /* of an evaluation in the callback */
   ric_error *error;
 } follower;
 
@@ -53,7 +53,7 @@ ric_status family_set(ric_family *f, double first, double second, ric_error *err
 }
 
 void family_forget(ric_family *f) {
-  f->at[0] = f->at[1] = f->seen_at[0] = f->seen_at[1] = NAN;
+  f->at[0] = f->at[1] = f->evaluated_at[0] = f->evaluated_at[1] = NAN;
 }
 
 static int report_point(const ric_curve_point *c, void *user) {
@@ -63,7 +63,7 @@ static int report_point(const ric_curve_point *c, void *user) {
                             .parameter = c->p,
                             .unknowns = f->unknowns,
                             .z = c->u,
-                            .tangent = c->t_u, /* t_p follows */
+                            .tangent = c->t_u, /* t_p is its last number */
                             .orbit = &f->orbit,
                             .multipliers = f->options.multipliers ? &f->multipliers : NULL,
                             .obstacle = SIZE_MAX,
@@ -73,13 +73,13 @@ static int report_point(const ric_curve_point *c, void *user) {
                             .iterations = c->iterations};
   w->status = family_set(f, c->p, f->problem.second, w->error);
   if (w->status == RIC_OK)
-    w->status = family_judge(f, c->u, w->error);
+    w->status = family_complete(f, c->u, w->error);
   if (w->status != RIC_OK)
     return 1;
   point.given = f->given;
   if (c->kind == RIC_CURVE_TEST) {
-    family_name_zero(f, c->u, c->which, &point);
-    if (point.kind == RIC_FAMILY_REGULAR) { /* a zero that means nothing */
+    family_classify_zero(f, c->u, c->which, &point);
+    if (point.kind == RIC_FAMILY_REGULAR) { /* a zero that is no special point */
       w->run->special--;
       return 0;
     }
@@ -106,8 +106,8 @@ ric_status ric_family_switch(ric_family *f, const double *z, double parameter, c
   return ric_curve_switch(f->curve, z, parameter, tangent, other, error);
 }
 
-/* Step of differences in a parameter, relative to 1 + its size. They only direct Newton's method and predictions: what
- * is found satisfies F, whose zeros know nothing of it. */
+/* Step of differences in a parameter, relative to 1 + its size. Their error affects the convergence of Newton's
+ * method and the predictions only: solutions satisfy F, which does not depend on them. */
 static const double parameter_step = 1e-5;
 
 const char *ric_family_kind_name(ric_family_kind kind) {
@@ -126,28 +126,28 @@ ric_family_options ric_family_options_default(void) {
   return options;
 }
 
-static ric_status residual_beside(ric_family *f, const double *at, size_t by, double shift, const double *z, double *F,
-                                  ric_error *error) {
+static ric_status shifted_residual(ric_family *f, const double *at, size_t by, double shift, const double *z, double *F,
+                                   ric_error *error) {
   double beside[2] = {at[0], at[1]};
   beside[by] += shift;
   RIC_TRY(family_set(f, beside[0], beside[1], error));
   return ric_shooting_residual(f->shooting, z, f->given, F, NULL, NULL, error);
 }
 
-/* Whether there is no residual beside the point: other failures are the caller's. */
+/* Whether there is no residual at the shifted parameter: other failures are returned to the caller. */
 static bool is_missing(ric_status status) {
   return status == RIC_EINVAL || status == RIC_ENUMERIC;
 }
 
 /* Derivative of F by a parameter at `at`: central differences, or one-sided ones of second order at the end of its
  * range. */
-static ric_status slopes(ric_family *f, const double *at, const double *z, size_t by, const double *F, double *F_p,
-                         ric_error *error) {
+static ric_status difference_quotient(ric_family *f, const double *at, const double *z, size_t by, const double *F,
+                                      double *F_p, ric_error *error) {
   const double h = parameter_step * (1 + fabs(at[by]));
-  ric_status below = residual_beside(f, at, by, -h, z, f->below, error);
+  ric_status below = shifted_residual(f, at, by, -h, z, f->below, error);
   if (below != RIC_OK && !is_missing(below))
     return below;
-  ric_status above = residual_beside(f, at, by, h, z, f->above, error);
+  ric_status above = shifted_residual(f, at, by, h, z, f->above, error);
   if (above != RIC_OK && (!is_missing(above) || below != RIC_OK))
     return is_missing(above) ? RIC_ENUMERIC : above;
   for (size_t i = 0; below == RIC_OK && above == RIC_OK && i < f->unknowns; i++)
@@ -155,16 +155,16 @@ static ric_status slopes(ric_family *f, const double *at, const double *z, size_
   if (below == RIC_OK && above == RIC_OK)
     return RIC_OK;
   double side = above == RIC_OK ? 1 : -1, *near = side > 0 ? f->above : f->below, *far = side > 0 ? f->below : f->above;
-  RIC_TRY(residual_beside(f, at, by, 2 * side * h, z, far, error));
+  RIC_TRY(shifted_residual(f, at, by, 2 * side * h, z, far, error));
   for (size_t i = 0; i < f->unknowns; i++)
     F_p[i] = side * (4 * near[i] - far[i] - 3 * F[i]) / (2 * h);
   return RIC_OK;
 }
 
-static ric_status difference(ric_family *f, const double *z, size_t by, const double *F, double *F_p,
-                             ric_error *error) {
+static ric_status parameter_derivative(ric_family *f, const double *z, size_t by, const double *F, double *F_p,
+                                       ric_error *error) {
   const double at[2] = {f->at[0], f->at[1]};
-  RIC_TRY(slopes(f, at, z, by, F, F_p, error));
+  RIC_TRY(difference_quotient(f, at, z, by, F, F_p, error));
   return family_set(f, at[0], at[1], error);
 }
 
@@ -172,17 +172,17 @@ ric_status family_residual(ric_family *f, const double *z, size_t by, double *F,
                            ric_error *error) {
   bool exact = !f->problem.set;
   RIC_TRY(ric_shooting_residual(f->shooting, z, f->given, F, J, exact ? F_p : NULL, error));
-  return exact ? RIC_OK : difference(f, z, by, F, F_p, error);
+  return exact ? RIC_OK : parameter_derivative(f, z, by, F, F_p, error);
 }
 
-/* Points of the curve are ones at which it was evaluated: the same run looks at the motion. */
+/* Newton's method ends with a residual at its solution: the same run evaluates the orbit of that point. */
 static ric_status curve_residual(const double *u, double p, double *F, double *J, double *F_p, void *user,
                                  ric_error *error) {
   ric_family *f = user;
   bool exact = !f->problem.set;
   RIC_TRY(family_set(f, p, f->problem.second, error));
   RIC_TRY(family_evaluate(f, u, F, J, exact ? F_p : NULL, error));
-  return exact ? RIC_OK : difference(f, u, 0, F, F_p, error);
+  return exact ? RIC_OK : parameter_derivative(f, u, 0, F, F_p, error);
 }
 
 static ric_status test(const double *u, double p, const double *t_u, double t_p, double *values, void *user,
@@ -190,7 +190,7 @@ static ric_status test(const double *u, double p, const double *t_u, double t_p,
   ric_family *f = user;
   (void)t_u, (void)t_p;
   RIC_TRY(family_set(f, p, f->problem.second, error));
-  RIC_TRY(family_judge(f, u, error));
+  RIC_TRY(family_complete(f, u, error));
   family_tests(f, u, values);
   return RIC_OK;
 }
@@ -232,7 +232,7 @@ static ric_status allocate_family(ric_family *f, ric_error *error) {
     return ric_fail(error, RIC_ENOMEM, "no memory for a family of %zu unknowns", n);
   f->below = f->block;
   f->above = f->block + n;
-  f->seen_z = f->block + 2 * n;
+  f->evaluated_z = f->block + 2 * n;
   RIC_TRY(ric_orbit_init_for(&f->orbit, f->problem.system, ric_shooting_impacts(f->shooting), error));
   if (!f->options.multipliers)
     return RIC_OK;

@@ -29,28 +29,28 @@ struct ric_family {
   double at[2];                    /* parameters in the system; NaN: none yet */
   double given;                    /* with them */
   double *below, *above;           /* [unknowns] residuals beside a point */
-  ric_orbit orbit;                 /* of the point looked at last, and what else is known of it: */
+  ric_orbit orbit;                 /* of the motion evaluated last: */
   ric_multipliers multipliers;
-  double *seen_z, seen_at[2]; /* [unknowns] the point at which a run has looked, and parameters; NaN: none */
-  bool judged;                /* orbit and multipliers are complete, too */
-  size_t coincide;            /* pairs of multipliers that coincide at all points of this walk */
+  double *evaluated_z, evaluated_at[2]; /* [unknowns] the motion of the last run, and its parameters; NaN: none */
+  bool complete;                        /* orbit, verdict and multipliers are complete */
+  size_t coincide;                      /* pairs of multipliers that coincide at all points of this continuation run */
   double *block;
 };
 
 /** Puts parameters into the system. */
 ric_status family_set(ric_family *f, double first, double second, ric_error *error);
 
-/** Others may have changed the system: forgets what is in it. */
+/** Marks the numbers in the system as unknown: other code may have changed them. */
 void family_forget(ric_family *f);
 
-/** The orbit that a point shows is the family's own, and others have been looked at: fills it once more. */
-void family_show_again(ric_family *f, const ric_family_point *point);
+/** Evaluates a point again: its orbit is that of the family, which other motions have overwritten. */
+void family_evaluate_again(ric_family *f, const ric_family_point *point);
 
-/** Null vectors of (J, F_p) [unknowns + 1] at z: the `count` last singular vectors. Errors handled by GSL must be off.
- *  @returns RIC_ENUMERIC when there are more of them */
+/** Null vectors of (J, F_p) [unknowns + 1] at z: the `count` last singular vectors. GSL's error handler must be off.
+ *  @returns RIC_ENUMERIC when the null space has more dimensions */
 ric_status family_null_vectors(ric_family *f, const double *z, size_t count, double *vectors, ric_error *error);
 
-/** A copy of a point's family with other impacts: its first z from a guess. */
+/** Creates a family with other impacts that begins at a point of a family: its first z from a guess. */
 ric_status family_branch(const ric_family_problem *problem, const ric_family *from, const ric_family_point *point,
                          const double *x, const double *times, double period, ric_family_junction *junction,
                          ric_error *error);
@@ -59,20 +59,21 @@ ric_status family_branch(const ric_family_problem *problem, const ric_family *fr
 ric_status family_residual(ric_family *f, const double *z, size_t by, double *F, double *J, double *F_p,
                            ric_error *error);
 
-/** Runs along a motion and sees its orbit, its gaps and the matrix of its multipliers.
- *  @param F, J, F_given  by the same run, as ric_shooting_residual; may be NULL */
+/** Integrates a motion once, for its orbit, its gaps and the matrix of its multipliers.
+ *  @param F, J, F_given  from the same run, as ric_shooting_residual; may be NULL */
 ric_status family_evaluate(ric_family *f, const double *z, double *F, double *J, double *F_given, ric_error *error);
 
-/** Looks at a motion: orbit, verdict, multipliers. No run when it was seen last, nothing when it was looked at. */
-ric_status family_judge(ric_family *f, const double *z, ric_error *error);
+/** Completes orbit, verdict and multipliers of a motion. It integrates only if the last run was along another
+ *  motion, and does nothing if they are complete. */
+ric_status family_complete(ric_family *f, const double *z, ric_error *error);
 
-/** Test functions [tests] of the motion that was looked at. */
+/** Test functions [tests] of the motion evaluated last. */
 void family_tests(ric_family *f, const double *z, double *values);
 
-/** What a zero of a test function is; RIC_FAMILY_REGULAR: nothing. Sets kind, obstacle, time and order. */
-void family_name_zero(ric_family *f, const double *z, size_t test, ric_family_point *point);
+/** Classifies a zero of a test function; RIC_FAMILY_REGULAR: no special point. Sets kind, obstacle, time and order. */
+void family_classify_zero(ric_family *f, const double *z, size_t test, ric_family_point *point);
 
-/** State [n + m] after impact `which` of the motion that was looked at. */
+/** State [n + m] after impact `which` of the motion evaluated last. */
 const double *family_state_after(const ric_family *f, const double *z, size_t which);
 
 #endif

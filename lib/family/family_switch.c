@@ -1,4 +1,4 @@
-/* Ways over to other families: a contact more or less, and twice the period. */
+/* Switching to other families: with one impact more or less, and with twice the period. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,9 +8,10 @@
 
 #include "family.h"
 
-/* Where families meet: what the ways over to another one share. */
+/* Families that meet: what all switches share. */
 
-/* First step into another family. Multipliers grow without bound towards a touch, and special points crowd there. */
+/* First step along the new family. Multipliers grow without bound towards a grazing point, and special points
+ * accumulate there. */
 static const double first_step = 1e-3;
 
 /* Singular values below it, over the largest, are zero. */
@@ -23,10 +24,10 @@ void ric_family_junction_clear(ric_family_junction *junction) {
   *junction = (ric_family_junction){0};
 }
 
-void family_show_again(ric_family *f, const ric_family_point *point) {
+void family_evaluate_again(ric_family *f, const ric_family_point *point) {
   family_forget(f);
   if (family_set(f, point->parameter, f->problem.second, NULL) == RIC_OK)
-    (void)family_judge(f, point->z, NULL);
+    (void)family_complete(f, point->z, NULL);
   family_forget(f);
 }
 
@@ -47,8 +48,8 @@ ric_status family_branch(const ric_family_problem *problem, const ric_family *fr
   return ric_shooting_guess(junction->family->shooting, x, x + n, times, period, junction->z, error);
 }
 
-/* (J, F_p) in the first rows of a square matrix. */
-static ric_status fill(ric_family *f, const double *z, gsl_matrix *A, ric_error *error) {
+/* Sets the first rows of a square matrix to (J, F_p). */
+static ric_status fill_bordered_rows(ric_family *f, const double *z, gsl_matrix *A, ric_error *error) {
   size_t n = f->unknowns;
   double *J = malloc((n * n + 2 * n) * sizeof *J);
   if (!J)
@@ -82,7 +83,7 @@ ric_status family_null_vectors(ric_family *f, const double *z, size_t count, dou
   size_t size = f->unknowns + 1;
   gsl_matrix *A = gsl_matrix_calloc(size, size), *V = gsl_matrix_alloc(size, size);
   gsl_vector *S = gsl_vector_alloc(size), *work = gsl_vector_alloc(size);
-  ric_status status = A && V && S && work ? fill(f, z, A, error)
+  ric_status status = A && V && S && work ? fill_bordered_rows(f, z, A, error)
                                           : ric_fail(error, RIC_ENOMEM, "no memory for a matrix of size %zu", size);
   if (status == RIC_OK)
     status = decompose(A, V, S, work, count, vectors, error);
@@ -97,15 +98,15 @@ ric_status family_null_vectors(ric_family *f, const double *z, size_t count, dou
   return status;
 }
 
-/* Going over to the family with a contact more, or less. */
+/* Switching to the family with an impact more, or less. */
 
-/* How far along the tangent the other family is looked at, for the side on which it exists. */
-static const double feeler = 1e-4;
+/* Distance along the tangent at which a family is evaluated to find the side on which it is admissible. */
+static const double side_distance = 1e-4;
 
-/* Times this near to a turning point of an even motion, over the period, are there. */
+/* Times nearer to a turning point of an even motion than this, over the period, are at it. */
 static const double at_turning = 1e-7;
 
-/* A crossing being made: impacts of the new family, and where its motion begins. */
+/* A switch in progress: impacts of the new family, and the first state of its motion. */
 typedef struct crossing {
   ric_family *from;
   const ric_family_point *point;
@@ -113,7 +114,7 @@ typedef struct crossing {
   size_t *start, *half, *sequence; /* of the new family */
   double *times;                   /* of its sequence */
   double *x;                       /* [n + m] first state */
-  double begin, period;            /* when that is */
+  double begin, period;            /* time of the first state */
   ric_family_junction *junction;
   ric_error *error;
 } crossing;
@@ -149,8 +150,8 @@ static bool is_even(const crossing *c) {
   return c->from->problem.motion.kind == RIC_MOTION_EVEN;
 }
 
-/* Puts an impact into the sequence, in order of time. */
-static void insert(crossing *c, size_t obstacle, double time) {
+/* Inserts an impact into the sequence, in order of time. */
+static void insert_impact(crossing *c, size_t obstacle, double time) {
   size_t *count = &c->problem.motion.count, k = *count;
   double first = *count > 0 ? c->times[0] : 0;
   if (!is_even(c))
@@ -174,10 +175,10 @@ static void add_contact(crossing *c) {
   else if (is_even(c) && c->period / 2 - time < at_turning * c->period)
     c->half[m->half_count++] = c->point->obstacle;
   else
-    insert(c, c->point->obstacle, time);
+    insert_impact(c, c->point->obstacle, time);
 }
 
-static bool take_out(size_t *list, size_t *count, size_t obstacle) {
+static bool remove_obstacle(size_t *list, size_t *count, size_t obstacle) {
   for (size_t k = 0; k < *count; k++)
     if (list[k] == obstacle) {
       memmove(list + k, list + k + 1, (*count - k - 1) * sizeof *list);
@@ -193,9 +194,9 @@ static ric_status remove_contact(crossing *c) {
   size_t which = 0;
   bool at_start = is_even(c) && time < at_turning * c->period;
   bool at_half = is_even(c) && fabs(time - c->period / 2) < at_turning * c->period;
-  if (at_start && take_out(c->start, &m->start_count, c->point->obstacle))
+  if (at_start && remove_obstacle(c->start, &m->start_count, c->point->obstacle))
     return RIC_OK;
-  if (at_half && take_out(c->half, &m->half_count, c->point->obstacle))
+  if (at_half && remove_obstacle(c->half, &m->half_count, c->point->obstacle))
     return RIC_OK;
   for (size_t k = 0; k < m->count; k++) {
     double apart = fabs(remainder(c->times[k] - time, c->period));
@@ -215,7 +216,7 @@ static ric_status remove_contact(crossing *c) {
 
 /* --- the motion at the crossing ----------------------------------------------------------------------------------- */
 
-/* State at a time of the motion that is left, after an impact there; the touch itself leaves it alone. */
+/* State of the old motion at a time, after an impact there; a grazing contact does not change the state. */
 static ric_status state_at(crossing *c, double time, double *x) {
   ric_shooting *s = c->from->shooting;
   const arc_plan *plan = &s->arcs;
@@ -234,12 +235,12 @@ static ric_status state_at(crossing *c, double time, double *x) {
   return RIC_OK;
 }
 
-/* The first state of the new family, and when it is. */
+/* The first state of the new family, and its time. */
 static ric_status find_start(crossing *c) {
   const ric_shooting_problem *m = &c->problem.motion;
   size_t size = c->from->shooting->arcs.size;
   c->begin = !is_even(c) && m->count > 0 ? c->times[0] : 0;
-  if (is_even(c)) { /* the same motion: only the names of its numbers change */
+  if (is_even(c)) { /* the motion is the same: only its unknowns have other meanings */
     (void)shooting_begin(c->from->shooting, 0, c->point->z, c->period, WISH_STATE);
     memcpy(c->x, c->from->shooting->x, size * sizeof *c->x);
     return RIC_OK;
@@ -247,11 +248,11 @@ static ric_status find_start(crossing *c) {
   return state_at(c, c->begin, c->x);
 }
 
-/* How much a family near the crossing is one: the smaller of what its gaps and its impacts leave. */
-static ric_status soundness(ric_family *f, const double *z, double parameter, double second, double *value,
-                            ric_error *error) {
+/* Smallest gap and smallest impact speed (minus the gap rate) of a motion: positive where it is admissible. */
+static ric_status admissible_margin(ric_family *f, const double *z, double parameter, double second, double *value,
+                                    ric_error *error) {
   RIC_TRY(family_set(f, parameter, second, error));
-  RIC_TRY(family_judge(f, z, error));
+  RIC_TRY(family_complete(f, z, error));
   const gap_watch *g = &f->shooting->gaps.watch;
   *value = fmin(g->free.value, g->own.value);
   for (size_t k = 0; k < f->impacts; k++)
@@ -259,14 +260,14 @@ static ric_status soundness(ric_family *f, const double *z, double parameter, do
   return RIC_OK;
 }
 
-/* Which way along a tangent [n + 1] a family becomes sound, or less unsound. */
-typedef struct way {
-  int sign;    /* 0 where it does not tell */
-  bool exists; /* it is sound there */
-} way;
+/* The direction along a tangent [n + 1] in which a family becomes admissible, or less inadmissible. */
+typedef struct side {
+  int sign;    /* 0: both directions are equal */
+  bool exists; /* it is admissible there */
+} side;
 
-static ric_status find_side(ric_family *f, const double *z, const double *t, double parameter, double second,
-                            way *found, ric_error *error) {
+static ric_status find_admissible_side(ric_family *f, const double *z, const double *t, double parameter, double second,
+                                       side *found, ric_error *error) {
   double value[2] = {0, 0};
   size_t n = f->unknowns;
   ric_status status = RIC_OK;
@@ -274,12 +275,12 @@ static ric_status find_side(ric_family *f, const double *z, const double *t, dou
   if (!beside)
     return ric_fail(error, RIC_ENOMEM, "no memory for %zu unknowns", n);
   for (int k = 0; k < 2 && status == RIC_OK; k++) {
-    double step = k ? feeler : -feeler;
+    double step = k ? side_distance : -side_distance;
     for (size_t i = 0; i < n; i++)
       beside[i] = z[i] + step * t[i];
-    status = soundness(f, beside, parameter + step * t[n], second, &value[k], error);
+    status = admissible_margin(f, beside, parameter + step * t[n], second, &value[k], error);
   }
-  *found = (way){value[1] > value[0] ? 1 : value[1] < value[0] ? -1 : 0, fmax(value[0], value[1]) > 0};
+  *found = (side){value[1] > value[0] ? 1 : value[1] < value[0] ? -1 : 0, fmax(value[0], value[1]) > 0};
   free(beside);
   return status;
 }
@@ -294,14 +295,14 @@ static ric_status find_sides(crossing *c) {
   const ric_family_point *point = c->point;
   size_t n = f->unknowns;
   double p = point->parameter, second = c->problem.second;
-  way found;
+  side found;
   RIC_TRY(family_null_vectors(f, j->z, 1, j->tangent, c->error));
-  RIC_TRY(find_side(f, j->z, j->tangent, p, second, &found, c->error));
+  RIC_TRY(find_admissible_side(f, j->z, j->tangent, p, second, &found, c->error));
   for (size_t i = 0; i <= n && found.sign < 0; i++)
     j->tangent[i] = -j->tangent[i];
   j->side = found.exists && fabs(j->tangent[n]) > 1e-12 ? sign_of(j->tangent[n]) : 0;
-  family_forget(c->from); /* the other one has changed the system */
-  RIC_TRY(find_side(c->from, point->z, point->tangent, p, second, &found, c->error));
+  family_forget(c->from); /* the new family has changed the system */
+  RIC_TRY(find_admissible_side(c->from, point->z, point->tangent, p, second, &found, c->error));
   j->other_side = (found.exists ? found.sign : 0) * sign_of(point->tangent[c->from->unknowns]);
   family_forget(f);
   return RIC_OK;
@@ -334,7 +335,7 @@ ric_status ric_family_cross(ric_family *family, const ric_family_point *point, r
   if (status == RIC_OK)
     status = find_sides(&c);
   gsl_set_error_handler(handler);
-  family_show_again(family, point);
+  family_evaluate_again(family, point);
   if (status != RIC_OK)
     ric_family_junction_clear(junction);
   free(c.start);
@@ -342,9 +343,9 @@ ric_status ric_family_cross(ric_family *family, const ric_family_point *point, r
   return status;
 }
 
-/* Going over to the family of twice the period. */
+/* Switching to the family of twice the period. */
 
-/* The motion twice, and when its impacts are. */
+/* The motion traversed twice, with the times of its impacts. */
 typedef struct doubling {
   const ric_family *from;
   const ric_family_point *point;
@@ -353,7 +354,7 @@ typedef struct doubling {
   double *times, period;
 } doubling;
 
-static ric_status repeat(doubling *d, ric_error *error) {
+static ric_status traverse_twice(doubling *d, ric_error *error) {
   ric_shooting_problem *m = &d->problem.motion;
   const arc_plan *plan = &d->from->shooting->arcs;
   size_t count = m->count;
@@ -371,8 +372,9 @@ static ric_status repeat(doubling *d, ric_error *error) {
   return RIC_OK;
 }
 
-/* Of the two null vectors the one along which the parameter stands still; the other is the motion run through twice. */
-static void combine(const double *vectors, size_t size, double *tangent) {
+/* Of the two null vectors the combination along which the parameter is constant; the other is the tangent of the
+ * motion traversed twice. */
+static void combine_at_constant_parameter(const double *vectors, size_t size, double *tangent) {
   const double *a = vectors, *b = vectors + size;
   for (size_t i = 0; i < size; i++)
     tangent[i] = b[size - 1] * a[i] - a[size - 1] * b[i];
@@ -386,7 +388,7 @@ static ric_status find_tangent(ric_family_junction *j, ric_error *error) {
     return ric_fail(error, RIC_ENOMEM, "no memory for vectors of %zu numbers", size);
   ric_status status = family_null_vectors(j->family, j->z, 2, vectors, error);
   if (status == RIC_OK)
-    combine(vectors, size, j->tangent);
+    combine_at_constant_parameter(vectors, size, j->tangent);
   free(vectors);
   return status;
 }
@@ -408,7 +410,7 @@ ric_status ric_family_double(ric_family *family, const ric_family_point *point, 
   gsl_error_handler_t *handler = gsl_set_error_handler_off();
   ric_status status = family_set(family, point->parameter, family->problem.second, error);
   if (status == RIC_OK)
-    status = repeat(&d, error);
+    status = traverse_twice(&d, error);
   if (status == RIC_OK)
     status = family_branch(&d.problem, family, point, point->z, d.times, 2 * d.period, junction, error);
   if (status == RIC_OK)

@@ -1,7 +1,8 @@
 /* Curves of special points in two parameters.
  *
- * Unknowns are z and the first parameter, equations F = 0 and psi = 0, where psi is what vanishes at the special point.
- * Its derivatives are central differences: they direct Newton's method, and the zeros of psi know nothing of them. */
+ * Unknowns are z and the first parameter, equations F = 0 and psi = 0, where psi is the quantity that vanishes at
+ * the special point. Its derivatives are central differences: their error affects the convergence of Newton's method
+ * only. */
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -12,26 +13,26 @@
 
 #include "family.h"
 
-/* Step of differences of psi, relative to 1 + the size of what moves. */
+/* Step of differences of psi, relative to 1 + the size of the variable. */
 static const double psi_step = 1e-5;
 
 typedef struct tracer {
   ric_family *f;
   ric_family_kind kind;
-  size_t which;        /* test function; of folds none */
-  double unit;         /* psi is measured in it */
+  size_t which;        /* its test function; not used for folds */
+  double unit;         /* of psi */
   double *z, *J, *F_p; /* [n], [n][n], [n] */
   double *F;           /* [n] */
-  double *slopes;      /* [n + 2] of psi */
+  double *derivatives; /* [n + 2] derivatives of psi */
   gsl_permutation *order;
   ric_family_curve_tests tests;
-  int (*seen)(const ric_family_curve_point *point, void *user);
+  int (*visit)(const ric_family_curve_point *point, void *user);
   void *user;
   ric_status status;
   ric_error *error;
 } tracer;
 
-/* --- what vanishes ------------------------------------------------------------------------------------------------ */
+/* --- psi ---------------------------------------------------------------------------------------------------------- */
 
 static ric_status determinant(tracer *t, const double *z, double *value, ric_error *error) {
   size_t n = t->f->unknowns;
@@ -59,11 +60,13 @@ static ric_status psi(tracer *t, const double *z, double first, double second, d
                                         : f->orbit.gap_rate[t->which - TEST_IMPACTS];
   }
   *value /= t->unit;
-  return isfinite(*value) ? RIC_OK : ric_fail(error, RIC_ENUMERIC, "what vanishes at the special point has no value");
+  return isfinite(*value) ? RIC_OK
+                          : ric_fail(error, RIC_ENUMERIC, "the test function of the special point has no value");
 }
 
 /* Derivatives [n + 2] of psi: by z, by both parameters. */
-static ric_status gradient(tracer *t, const double *z, double first, double second, double *slopes, ric_error *error) {
+static ric_status gradient(tracer *t, const double *z, double first, double second, double *derivatives,
+                           ric_error *error) {
   size_t n = t->f->unknowns;
   double at[2] = {first, second}, value[2];
   for (size_t i = 0; i < n + 2; i++) {
@@ -76,7 +79,7 @@ static ric_status gradient(tracer *t, const double *z, double first, double seco
       RIC_TRY(psi(t, t->z, at[0], at[1], &value[k], error));
     }
     *moved = kept;
-    slopes[i] = (value[1] - value[0]) / (2 * h);
+    derivatives[i] = (value[1] - value[0]) / (2 * h);
   }
   return RIC_OK;
 }
@@ -96,13 +99,13 @@ static ric_status trace_residual(const double *u, double p, double *F, double *J
     J[i * size + n] = t->F_p[i];
   }
   RIC_TRY(family_residual(f, u, 1, F, t->J, F_p, error));
-  RIC_TRY(gradient(t, u, first, p, t->slopes, error));
-  memcpy(J + n * size, t->slopes, size * sizeof *J);
-  F_p[n] = t->slopes[size];
+  RIC_TRY(gradient(t, u, first, p, t->derivatives, error));
+  memcpy(J + n * size, t->derivatives, size * sizeof *J);
+  F_p[n] = t->derivatives[size];
   return psi(t, u, first, p, &F[n], error);
 }
 
-/* The point of the curve at (z, first) and second, with its orbit. */
+/* Evaluates the orbit of the point (z, first) of the curve at `second`. */
 static ric_status evaluate_point(tracer *t, const double *u, double p, ric_family_curve_point *point,
                                  ric_error *error) {
   ric_family *f = t->f;
@@ -136,7 +139,7 @@ static int report_curve_point(const ric_curve_point *c, void *user) {
   point.iterations = c->iterations;
   if (c->kind == RIC_CURVE_TEST)
     point.zero = c->which;
-  int over = t->seen ? t->seen(&point, t->user) : 0;
+  int over = t->visit ? t->visit(&point, t->user) : 0;
   family_forget(t->f);
   return over;
 }
@@ -150,7 +153,7 @@ static ric_status choose_multiplier(tracer *t, const ric_family_point *point) {
   return RIC_OK;
 }
 
-/* Which gap or impact the point is about. */
+/* The test function of the gap or impact of the point. */
 static ric_status choose_test(tracer *t, const ric_family_point *point) {
   ric_family *f = t->f;
   double least = INFINITY;
@@ -167,7 +170,7 @@ static ric_status choose_test(tracer *t, const ric_family_point *point) {
   return RIC_OK;
 }
 
-static ric_status choose(tracer *t, const ric_family_point *point) {
+static ric_status choose_psi(tracer *t, const ric_family_point *point) {
   t->kind = point->kind;
   RIC_TRY(family_set(t->f, point->parameter, t->f->problem.second, t->error));
   switch (point->kind) {
@@ -186,21 +189,22 @@ static ric_status choose(tracer *t, const ric_family_point *point) {
   }
 }
 
-/* A unit in which the slopes of psi are of order one. */
-static ric_status choose_unit(tracer *t, const double *z, double first, double second, double *slopes) {
+/* A unit in which the derivatives of psi are of order one. */
+static ric_status choose_unit(tracer *t, const double *z, double first, double second, double *derivatives) {
   double size = 0;
   t->unit = 1;
-  RIC_TRY(gradient(t, z, first, second, slopes, t->error));
+  RIC_TRY(gradient(t, z, first, second, derivatives, t->error));
   for (size_t i = 0; i < t->f->unknowns + 2; i++)
-    size = fmax(size, fabs(slopes[i]));
+    size = fmax(size, fabs(derivatives[i]));
   if (!(size > 0 && size < INFINITY))
-    return ric_fail(t->error, RIC_ENUMERIC, "what vanishes at the special point has slopes of size %g", size);
+    return ric_fail(t->error, RIC_ENUMERIC,
+                    "the derivatives of the test function have the size %g, expected a number > 0", size);
   t->unit = size;
   return RIC_OK;
 }
 
-static ric_status walk(tracer *t, const ric_family_point *point, const ric_curve_options *options, ric_curve_run *run,
-                       double *u) {
+static ric_status follow_curve(tracer *t, const ric_family_point *point, const ric_curve_options *options,
+                               ric_curve_run *run, double *u) {
   size_t n = t->f->unknowns;
   const ric_curve_problem problem = {.unknowns = n + 1,
                                      .residual = trace_residual,
@@ -208,10 +212,10 @@ static ric_status walk(tracer *t, const ric_family_point *point, const ric_curve
                                      .test = t->tests.count > 0 ? test : NULL,
                                      .user = t};
   ric_curve *curve = NULL;
-  RIC_TRY(choose(t, point));
+  RIC_TRY(choose_psi(t, point));
   memcpy(u, point->z, n * sizeof *u);
   u[n] = point->parameter;
-  RIC_TRY(choose_unit(t, point->z, point->parameter, t->f->problem.second, t->slopes));
+  RIC_TRY(choose_unit(t, point->z, point->parameter, t->f->problem.second, t->derivatives));
   RIC_TRY(ric_curve_create(&problem, options, &curve, t->error));
   ric_status status = ric_curve_follow(curve, u, t->f->problem.second, NULL, report_curve_point, t, run, t->error);
   ric_curve_destroy(&curve);
@@ -220,11 +224,11 @@ static ric_status walk(tracer *t, const ric_family_point *point, const ric_curve
 
 ric_status ric_family_trace(ric_family *f, const ric_family_point *point, const ric_curve_options *options,
                             const ric_family_curve_tests *tests,
-                            int (*seen)(const ric_family_curve_point *point, void *user), void *user,
+                            int (*visit)(const ric_family_curve_point *point, void *user), void *user,
                             ric_curve_run *run, ric_error *error) {
   ric_error own;
   size_t n = f->unknowns;
-  tracer t = {.f = f, .seen = seen, .user = user, .error = error ? error : &own};
+  tracer t = {.f = f, .visit = visit, .user = user, .error = error ? error : &own};
   if (tests)
     t.tests = *tests;
   *run = (ric_curve_run){0};
@@ -239,11 +243,11 @@ ric_status ric_family_trace(ric_family *f, const ric_family_point *point, const 
     t.F = t.J + n * n;
     t.F_p = t.F + n;
     t.z = t.F_p + n;
-    t.slopes = t.z + n;
-    status = walk(&t, point, options ? options : &f->options.curve, run, t.slopes + n + 2);
+    t.derivatives = t.z + n;
+    status = follow_curve(&t, point, options ? options : &f->options.curve, run, t.derivatives + n + 2);
   } else
     (void)ric_fail(error, RIC_ENOMEM, "no memory for a curve of %zu unknowns", n + 1);
-  family_show_again(f, point);
+  family_evaluate_again(f, point);
   gsl_set_error_handler(handler);
   gsl_permutation_free(t.order);
   free(t.J);

@@ -11,21 +11,22 @@
 #include "ricochet/normal_modes.h"
 #include "shooting/shooting.h"
 
-/* Most steps of a continuation run in the factor. Where the motion goes on they are a dozen, near other families a
- * hundred; more are a motion that runs away, which costs and finds nothing. */
+/* Most steps of a continuation run in the factor. A motion that continues to 1 takes a dozen, near other families a
+ * hundred; more steps follow a motion that grows without bound and never reaches 1. */
 enum { MOST_STEPS = 300 };
 
-/* First step and longest one in the factor: at a given period, and of motions that graze, with a free one. */
+/* First and longest step in the factor: at a given period, and of motions that graze, whose period is free. */
 static const double even_first_step = 0.25, even_longest_step = 1;
 static const double grazing_first_step = 0.05, grazing_longest_step = 0.25;
 
-/* Of motions that graze the derivatives are differences, and corrections shrink no further. */
+/* Of motions that graze the derivatives are differences, which limits the size of the last correction. */
 static const double grazing_newton_tol = 1e-11;
 
-/* Components of a mode, of unit length, that are smaller are rounding of zero. */
+/* Components of a mode of unit length below it are rounding of zero. */
 static const double moves_tol = 1e-12;
 
-/* A step along the period that only shows which way the energy goes: near grazing it may have an extreme. */
+/* Step along the period that finds the sign of the change of energy: short, since near grazing the energy may have
+ * an extreme. */
 static const double side_step = 1e-4;
 
 ric_status ric_guess_init(ric_guess *guess, size_t particles, ric_error *error) {
@@ -53,7 +54,7 @@ static void set_rest(ric_guess *guess, size_t particles, double period) {
   guess->rise = 0;
 }
 
-/* --- particles that swing alone ----------------------------------------------------------------------------------- */
+/* --- particles without coupling ----------------------------------------------------------------------------------- */
 
 static bool is_linear(ric_spring spring) {
   return spring.quadratic == 0 && spring.cubic == 0;
@@ -74,8 +75,8 @@ static ric_status find_amplitude(const ric_lattice *lattice, size_t particle, do
   const double square = 8.0 / 3 * (1 - w * period / (2 * pi)) * (w * w) / cubic;
   if (!(square > 0 && square < INFINITY))
     return ric_fail(error, RIC_EINVAL,
-                    "a particle alone has the period %.6g at no amplitude (cubic / mass = %g; linear: %.6g)", period,
-                    cubic, 2 * pi / w);
+                    "an uncoupled particle has the period %.6g at no amplitude (cubic / mass = %g; linear: %.6g)",
+                    period, cubic, 2 * pi / w);
   *amplitude = sqrt(square);
   return RIC_OK;
 }
@@ -142,12 +143,12 @@ ric_status ric_guess_mode(const ric_lattice *lattice, size_t mode, double energy
 typedef struct homotopy {
   const ric_guess_problem *problem;
   size_t particles;
-  ric_spring *springs; /* [2 n + 1] on-site springs and links of the lattice with the factor */
+  ric_spring *springs; /* [2 n + 1] on-site springs and links of the lattice with scaled nonlinear terms */
   ric_system *system;  /* that lattice; its obstacles are rigid */
   ric_family *family;
   double factor; /* of the nonlinear terms, at the last point */
-  double period; /* there */
-  double *z;     /* [n] the motion there: displacements, but speeds of particles that are hit at t = 0 */
+  double period; /* at the same point */
+  double *z;     /* [n] the motion at that point: displacements, but speeds of particles that are hit at t = 0 */
 } homotopy;
 
 static ric_spring scale_spring(ric_spring spring, double factor) {
@@ -182,7 +183,7 @@ static bool is_linear_lattice(const ric_lattice *lattice) {
   return is_linear(ric_lattice_link(lattice, lattice->particles));
 }
 
-/* Impacts are what the guess is about, also at Hertz contacts. */
+/* Obstacles are rigid here, Hertz contacts too: the impacts determine the guess. */
 static ric_status create_linear(homotopy *h, ric_error *error) {
   const size_t count = h->problem->obstacle_count;
   ric_obstacle *rigid = calloc(count + 1, sizeof *rigid);
@@ -242,7 +243,7 @@ static void put_motion(const homotopy *h, ric_guess *guess) {
 
 /* --- even motions with impacts at t = 0 and T/2 ------------------------------------------------------------------- */
 
-/* The parameter is the factor; the period stays as the problem gives it. */
+/* The parameter is the factor; the period is that of the problem. */
 static ric_status set_at_period(ric_system *system, const double *p, double *given, void *user, ric_error *error) {
   (void)given;
   return set_factor(user, p[0], system, error);
@@ -274,16 +275,16 @@ static ric_status solve_linear_part(homotopy *h, ric_error *error) {
   return status == RIC_OK ? RIC_OK : ric_fail(error, status, "%s", why.message);
 }
 
-/* A fold ends the run: beyond it energies grow without bound as the factor goes back to zero. */
-static int keep_even_point(const ric_family_point *point, void *user) {
+/* A fold ends the run: beyond it energies grow without bound as the factor returns to zero. */
+static int record_even_point(const ric_family_point *point, void *user) {
   homotopy *h = user;
   memcpy(h->z, point->z, point->unknowns * sizeof *h->z);
   h->factor = point->parameter;
   return point->kind == RIC_FAMILY_FOLD;
 }
 
-/* Why the run did not reach all nonlinear terms. */
-static ric_status fail_short(const homotopy *h, const ric_curve_run *run, ric_error *error) {
+/* Reports why the run did not reach all nonlinear terms. */
+static ric_status fail_before_all_terms(const homotopy *h, const ric_curve_run *run, ric_error *error) {
   char begin[RIC_REASON_BYTES];
   snprintf(begin, sizeof begin,
            "no motion of the period %.6g goes on from that of the linear part: with growing nonlinear terms ",
@@ -297,10 +298,10 @@ static ric_status fail_short(const homotopy *h, const ric_curve_run *run, ric_er
 static ric_status continue_even(homotopy *h, ric_error *error) {
   ric_curve_run run = {0};
   ric_error why = {0};
-  const ric_status status = ric_family_follow(h->family, h->z, 0, NULL, keep_even_point, h, &run, &why);
+  const ric_status status = ric_family_follow(h->family, h->z, 0, NULL, record_even_point, h, &run, &why);
   if (status != RIC_OK)
     return ric_fail(error, status, "the motion of the linear part does not go on: %.150s", why.message);
-  return run.end == RIC_CURVE_BOUND && h->factor == 1 ? RIC_OK : fail_short(h, &run, error);
+  return run.end == RIC_CURVE_BOUND && h->factor == 1 ? RIC_OK : fail_before_all_terms(h, &run, error);
 }
 
 static ric_status find_even(homotopy *h, ric_error *error) {
@@ -312,12 +313,12 @@ static ric_status find_even(homotopy *h, ric_error *error) {
   return all ? continue_even(h, error) : RIC_OK;
 }
 
-/* Depth at which the work of Hertz's force on a unit mass, 2/5 k d^(5/2), has taken the kinetic energy v^2 / 2. */
+/* Depth at which the work against Hertz's force on a unit mass, 2/5 k d^(5/2), equals the kinetic energy v^2 / 2. */
 static double find_depth(double speed, double stiffness) {
   return pow(5 * speed * speed / (4 * stiffness), 0.4);
 }
 
-/* Particles that press a Hertz contact at t = 0 turn around there. */
+/* At a Hertz contact t = 0 is the turning point, at the largest depth. */
 static void press_contacts(const ric_guess_problem *problem, ric_guess *guess) {
   for (size_t k = 0; k < problem->motion->start_count; k++) {
     const ric_obstacle *o = &problem->obstacles[problem->motion->at_start[k]];
@@ -399,8 +400,8 @@ static ric_status create_grazing_family(homotopy *h, ric_error *error) {
   return ric_family_create(&problem, &options, &h->family, error);
 }
 
-/* A factor that falls has passed a fold. */
-static int keep_grazing_point(const ric_family_curve_point *point, void *user) {
+/* A factor that decreases has passed a fold. */
+static int record_grazing_point(const ric_family_curve_point *point, void *user) {
   homotopy *h = user;
   if (point->second < h->factor)
     return 1;
@@ -410,7 +411,7 @@ static int keep_grazing_point(const ric_family_curve_point *point, void *user) {
   return 0;
 }
 
-/* @param z  [n] the motion of the linear part, which stays while h->z moves */
+/* @param z  [n] the motion of the linear part; it stays constant while h->z changes */
 static ric_status continue_grazing(homotopy *h, size_t mode, const double *z, ric_error *error) {
   const ric_family_point grazing = {.kind = RIC_FAMILY_IMPACT_LOST,
                                     .parameter = h->period,
@@ -428,7 +429,7 @@ static ric_status continue_grazing(homotopy *h, size_t mode, const double *z, ri
   options.newton_tol = grazing_newton_tol;
   options.poll = h->problem->motion->poll;
   RIC_TRY(create_grazing_family(h, error));
-  RIC_TRY(ric_family_trace(h->family, &grazing, &options, NULL, keep_grazing_point, h, &run, error));
+  RIC_TRY(ric_family_trace(h->family, &grazing, &options, NULL, record_grazing_point, h, &run, error));
   if (run.end == RIC_CURVE_BOUND && h->factor == 1)
     return RIC_OK;
   return ric_fail(error, RIC_ENUMERIC,
@@ -448,14 +449,14 @@ static ric_status add_nonlinear_terms(homotopy *h, size_t mode, ric_error *error
   return status;
 }
 
-/* Two points of the family with the impact: at grazing and beside it. */
-typedef struct beside {
+/* Two points of the family with the impact: at grazing and next to it. */
+typedef struct grazing_slope {
   size_t particle, count;
   double energy[2], speed[2];
-} beside;
+} grazing_slope;
 
-static int keep_beside(const ric_family_point *point, void *user) {
-  beside *b = user;
+static int record_slope(const ric_family_point *point, void *user) {
+  grazing_slope *b = user;
   if (point->kind != RIC_FAMILY_REGULAR)
     return 0;
   b->energy[b->count] = point->orbit->energy;
@@ -464,7 +465,7 @@ static int keep_beside(const ric_family_point *point, void *user) {
 }
 
 /* Along the period, with all nonlinear terms. */
-static ric_status find_beside(homotopy *h, size_t mode, beside *b, ric_error *error) {
+static ric_status find_grazing_slope(homotopy *h, size_t mode, grazing_slope *b, ric_error *error) {
   const ric_family_problem problem = {.system = h->system, .motion = *h->problem->motion, .parameters = 1};
   ric_family_options options = ric_family_options_default();
   ric_curve_run run = {0};
@@ -474,18 +475,18 @@ static ric_status find_beside(homotopy *h, size_t mode, beside *b, ric_error *er
   ric_family_destroy(&h->family);
   RIC_TRY(set_factor(h, 1, h->system, error));
   RIC_TRY(ric_family_create(&problem, &options, &h->family, error));
-  RIC_TRY(ric_family_follow(h->family, h->z, h->period, NULL, keep_beside, b, &run, error));
+  RIC_TRY(ric_family_follow(h->family, h->z, h->period, NULL, record_slope, b, &run, error));
   if (b->count == 2)
     return RIC_OK;
-  return ric_fail(error, RIC_ENUMERIC, "no motion with an impact beside that in which mode %zu grazes: %.100s", mode,
+  return ric_fail(error, RIC_ENUMERIC, "no motion with an impact next to that in which mode %zu grazes: %.100s", mode,
                   run.reason);
 }
 
 /* A particle that leaves a floor has a positive speed, one that leaves a wall a negative one. */
-static ric_status find_rise(homotopy *h, size_t mode, int *rise, ric_error *error) {
+static ric_status find_energy_sign(homotopy *h, size_t mode, int *rise, ric_error *error) {
   const ric_obstacle *obstacle = grazed_obstacle(h);
-  beside b = {.particle = obstacle->coordinate};
-  RIC_TRY(find_beside(h, mode, &b, error));
+  grazing_slope b = {.particle = obstacle->coordinate};
+  RIC_TRY(find_grazing_slope(h, mode, &b, error));
   const double slope = (b.energy[1] - b.energy[0]) * (b.speed[1] - b.speed[0]) * obstacle->side;
   *rise = (slope > 0) - (slope < 0);
   return RIC_OK;
@@ -503,7 +504,7 @@ ric_status ric_guess_grazing_mode(const ric_guess_problem *problem, size_t mode,
   if (status == RIC_OK)
     status = add_nonlinear_terms(&h, mode, error);
   if (status == RIC_OK)
-    status = find_rise(&h, mode, &rise, error);
+    status = find_energy_sign(&h, mode, &rise, error);
   if (status == RIC_OK) {
     put_motion(&h, guess);
     guess->rise = rise;
