@@ -1,5 +1,5 @@
-/* The outcome of an orbit and its reason in words, however the orbit was found; and what comes before that for orbits
- * of chains: their gaps on the segments of their motion, and modes at resonance. */
+/* The outcome of an orbit and its reason in words, for all methods; and the verdict on orbits of chains: their gaps
+ * on the segments of their motion, and modes at resonance. */
 #include "admissibility.h"
 
 #include <math.h>
@@ -41,7 +41,7 @@ static const char *owner(const obstacle_names *n, size_t obstacle, char *text) {
   return text;
 }
 
-/* Whether its coordinate has another one on the same side. */
+/* Whether its coordinate has another obstacle on the same side. */
 static bool is_ambiguous(const obstacle_names *n, size_t obstacle) {
   for (size_t j = 0; n->obstacles && j < n->count; j++)
     if (j != obstacle && n->obstacles[j].coordinate == n->obstacles[obstacle].coordinate &&
@@ -93,7 +93,7 @@ static double time_in_period(const ric_orbit *o, double time) {
   return t < 0 ? t + o->period : t;
 }
 
-/* The impact that comes in slowest, SIZE_MAX without impacts. */
+/* The impact with the smallest impact speed, SIZE_MAX without impacts. */
 static size_t weakest_impact(const ric_orbit *o) {
   size_t weakest = o->impacts > 0 ? 0 : SIZE_MAX;
   for (size_t k = 1; k < o->impacts; k++)
@@ -102,7 +102,7 @@ static size_t weakest_impact(const ric_orbit *o) {
   return weakest;
 }
 
-/* The first impact whose impulse pulls. */
+/* The first impact with a negative impulse. */
 static size_t first_pulling(const orbit_facts *f, const ric_orbit *o) {
   size_t first = SIZE_MAX;
   for (size_t k = 0; k < o->impacts; k++)
@@ -111,7 +111,7 @@ static size_t first_pulling(const orbit_facts *f, const ric_orbit *o) {
   return first;
 }
 
-/* The impulse along the gap, where the orbit has one: impact maps of users have none. */
+/* Gives the impulse along the gap, where the orbit has one: impact maps of users have none. */
 static void explain_pulling(const orbit_facts *f, ric_orbit *o, size_t k) {
   char words[PHRASE_BYTES], time[32];
   snprintf(time, sizeof time, "%.6g", o->impact_time[k]);
@@ -124,7 +124,7 @@ static void explain_pulling(const orbit_facts *f, ric_orbit *o, size_t k) {
       phrase(&f->names, o->impact_obstacle[k], "is pulled by", words), o->impact_time[k], o->gap_rate[k]);
 }
 
-static void explain_passing(const orbit_facts *f, ric_orbit *o) {
+static void explain_penetration(const orbit_facts *f, ric_orbit *o) {
   const gap_found *least = gap_watch_least(f->gaps), *first = &f->gaps->first;
   char words[PHRASE_BYTES];
   if (first->obstacle == NO_OBSTACLE)
@@ -146,7 +146,7 @@ static void explain_violation(const orbit_facts *f, ric_orbit *o) {
            !(passed->obstacle != NO_OBSTACLE && time_in_period(o, passed->time) < o->impact_time[pulling]))
     explain_pulling(f, o, pulling);
   else
-    explain_passing(f, o);
+    explain_penetration(f, o);
 }
 
 void admissibility_clearance(const orbit_facts *f, ric_orbit *o) {
@@ -194,11 +194,11 @@ void admissibility_violated(ric_orbit *o, double residual, double allowed) {
   snprintf(o->reason, sizeof o->reason, "equations are violated by %.3g, allowed %.3g", residual, allowed);
 }
 
-void admissibility_resonant(ric_orbit *o, bool carried, size_t mode, unsigned harmonic) {
-  o->outcome = carried ? RIC_GRAZING : RIC_RESONANT;
+void admissibility_resonant(ric_orbit *o, bool without_impulses, size_t mode, unsigned harmonic) {
+  o->outcome = without_impulses ? RIC_GRAZING : RIC_RESONANT;
   o->mode = (long long)mode;
   o->harmonic = harmonic;
-  if (carried)
+  if (without_impulses)
     admissibility_write_mode(o->reason, sizeof o->reason, mode, harmonic);
   else
     snprintf(o->reason, sizeof o->reason,
@@ -229,7 +229,7 @@ typedef struct gap_search {
   gap_watch *watch;
 } gap_search;
 
-/* At the site's own contact the gap is zero at x = 0. */
+/* At an impact of this site the gap is zero at x = 0. */
 static void watch_site(const gap_search *s, const motion_piece *piece, size_t i, ric_role role) {
   const ric_segment *segment = &piece->segment;
   double c[RIC_POLY_DEGREE + 1];
@@ -260,26 +260,26 @@ static void watch_piece(const motion_piece *piece, void *user) {
   }
 }
 
-/* From sites of the cell to particles of the chain. */
-static void name_particle(const unit_cell *cell, gap_found *found) {
+/* Converts a site of the cell to a particle of the chain. */
+static void convert_site(const unit_cell *cell, gap_found *found) {
   if (found->obstacle != NO_OBSTACLE)
     found->obstacle = unit_cell_particle(cell, found->obstacle);
 }
 
-/* @param zero  gaps below it count as zero; larger ones of sites that are hit are of no interest */
+/* @param zero  gaps below it count as zero; gaps above it of sites that are hit are skipped */
 static ric_status find_gaps(motion *m, const unit_cell *cell, const boundary_state *state, double tolerance,
                             double zero, double period, gap_watch *watch, double *mismatch, ric_poll poll,
                             ric_error *error) {
   gap_search s = {.cell = cell, .watch = watch};
   gap_watch_begin(watch, tolerance, zero, zero);
   RIC_TRY(motion_run(m, &cell->chain, period, state, watch_piece, &s, mismatch, poll, error));
-  name_particle(cell, &watch->free);
-  name_particle(cell, &watch->own);
-  name_particle(cell, &watch->first);
+  convert_site(cell, &watch->free);
+  convert_site(cell, &watch->own);
+  convert_site(cell, &watch->first);
   return RIC_OK;
 }
 
-/* --- modes of a chain at resonance with the period, and whether the contacts of a pattern see them ---------------- */
+/* --- modes of a chain at resonance with the period, and their amplitudes at the contacts of a pattern ------------- */
 
 /* Wave index (a real number) at which the image ring has a frequency, clamped to the band. */
 static double wave_index(const ric_chain *chain, double frequency) {
@@ -294,7 +294,7 @@ static size_t add_wave(const ric_chain *chain, size_t wave, unsigned harmonic, b
   return count;
 }
 
-/** Modes with |omega_j T / (2 pi) - l| <= tolerance, found from (12) without looking at every mode; at most
+/** Modes with |omega_j T / (2 pi) - l| <= tolerance, found from (12) without a loop over all modes; at most
  *  BORDER_MODES of them. @returns their number. */
 static size_t resonant_modes(const ric_chain *chain, double period, double tolerance, border_mode *modes) {
   double turns = period / (2 * pi), fastest = ric_chain_frequency_max(chain) * turns;
@@ -322,15 +322,15 @@ static size_t resonant_modes(const ric_chain *chain, double period, double toler
  *  a mode among them that vanishes at every contact, 0 when only combinations do. */
 static ric_status resonant_free(const unit_cell *whole, const border_mode *modes, size_t count, bool *free_amplitude,
                                 size_t *hidden, ric_error *error) {
-  size_t visible, least_rank = 1;
+  size_t observable, least_rank = 1;
   *free_amplitude = false;
   *hidden = 0;
   if (count == 0)
     return RIC_OK;
-  RIC_TRY(contact_visible(whole, modes, count, NULL, &visible, error));
-  *free_amplitude = visible < count;
+  RIC_TRY(contact_observable(whole, modes, count, NULL, &observable, error));
+  *free_amplitude = observable < count;
   for (size_t i = 0; *free_amplitude && least_rank == 1 && i < count; i++) {
-    RIC_TRY(contact_visible(whole, &modes[i], 1, NULL, &least_rank, error));
+    RIC_TRY(contact_observable(whole, &modes[i], 1, NULL, &least_rank, error));
     if (least_rank == 0)
       *hidden = i;
   }
@@ -346,19 +346,18 @@ static double combined(const unit_cell *whole, const border_mode *modes, size_t 
   return u;
 }
 
-/** Whether the modes alone satisfy the contact conditions, so that the orbit tends to a linear mode without impulses.
- */
-/* The visible combinations are orthogonal at the contacts: the floors less their projections must vanish. */
-static ric_status resonant_carries(const unit_cell *whole, const border_mode *modes, size_t count, bool *carries,
-                                   ric_error *error) {
+/** Whether the modes alone satisfy the contact conditions, so that the orbit tends to a linear mode without
+ *  impulses. Observable combinations are orthogonal at the contacts: the floors less their projections must vanish. */
+static ric_status resonant_without_impulses(const unit_cell *whole, const border_mode *modes, size_t count,
+                                            bool *without_impulses, ric_error *error) {
   double rotation[BORDER_MODES * BORDER_MODES], all = 0, reached = 0;
-  size_t visible;
-  RIC_TRY(contact_visible(whole, modes, count, rotation, &visible, error));
+  size_t observable;
+  RIC_TRY(contact_observable(whole, modes, count, rotation, &observable, error));
   for (size_t k = 0; k < whole->impacts; k++) {
     double b = ric_chain_floor(&whole->chain, whole->contacts[k].site);
     all += b * b;
   }
-  for (size_t v = 0; v < visible; v++) {
+  for (size_t v = 0; v < observable; v++) {
     double along = 0, square = 0;
     for (size_t k = 0; k < whole->impacts; k++) {
       double u = combined(whole, modes, count, rotation, v, &whole->contacts[k]);
@@ -367,7 +366,7 @@ static ric_status resonant_carries(const unit_cell *whole, const border_mode *mo
     }
     reached += along * along / square;
   }
-  *carries = all - reached <= 1e-12 * all; /* squares: a millionth of the floors, far above rounding */
+  *without_impulses = all - reached <= 1e-12 * all; /* squares: a millionth of the floors, far above rounding */
   return RIC_OK;
 }
 
@@ -389,7 +388,8 @@ static size_t resonant_dominant(const ric_chain *chain, const border_mode *modes
 
 /* --- the verdict on orbits of chains ------------------------------------------------------------------------------ */
 
-/* Velocities over the largest frequency stand for what is reached between the impacts. */
+/* The largest displacement at t = 0 and T/2, and the velocities over the largest frequency, which stand for
+ * displacements between the impacts. */
 static double largest_displacement(const boundary_state *state, const ric_chain *chain) {
   double largest = 0, slowest = 1 / ric_chain_frequency_max(chain);
   for (size_t i = 0; i < chain->particles; i++) {
@@ -410,25 +410,26 @@ static double largest_contact_error(const unit_cell *cell, const boundary_state 
   return largest;
 }
 
-/* What the resonant modes do: they carry the orbit without impulses, or an amplitude is free, or neither. */
-static ric_status judge_modes(const unit_cell *whole, const border_mode *modes, size_t count, ric_orbit *orbit,
-                              bool *decided, ric_error *error) {
+/* Whether the resonant modes satisfy the contact conditions without impulses, or an amplitude is free; `decided`
+ * where one of both is true. */
+static ric_status classify_modes(const unit_cell *whole, const border_mode *modes, size_t count, ric_orbit *orbit,
+                                 bool *decided, ric_error *error) {
   size_t which = 0;
-  bool carried;
-  RIC_TRY(resonant_carries(whole, modes, count, &carried, error));
-  if (carried)
+  bool without_impulses;
+  RIC_TRY(resonant_without_impulses(whole, modes, count, &without_impulses, error));
+  if (without_impulses)
     which = resonant_dominant(&whole->chain, modes, count, orbit->q);
   else
     RIC_TRY(resonant_free(whole, modes, count, decided, &which, error));
-  *decided = *decided || carried;
+  *decided = *decided || without_impulses;
   if (*decided)
-    admissibility_resonant(orbit, carried, modes[which].mode, modes[which].harmonic);
+    admissibility_resonant(orbit, without_impulses, modes[which].mode, modes[which].harmonic);
   return RIC_OK;
 }
 
-/* Resonances are those of the whole chain: its cell does not know all modes. */
-static ric_status judge_resonances(const ric_chain *chain, const ric_pattern *pattern, double tolerance,
-                                   ric_orbit *orbit, bool *decided, ric_error *error) {
+/* Resonances are those of the whole chain: its cell does not have all modes. */
+static ric_status classify_resonances(const ric_chain *chain, const ric_pattern *pattern, double tolerance,
+                                      ric_orbit *orbit, bool *decided, ric_error *error) {
   border_mode modes[BORDER_MODES];
   size_t count = resonant_modes(chain, orbit->period, tolerance, modes);
   *decided = false;
@@ -437,13 +438,13 @@ static ric_status judge_resonances(const ric_chain *chain, const ric_pattern *pa
   unit_cell whole = {0};
   ric_status status = unit_cell_whole(&whole, chain, pattern, error);
   if (status == RIC_OK)
-    status = judge_modes(&whole, modes, count, orbit, decided, error);
+    status = classify_modes(&whole, modes, count, orbit, decided, error);
   unit_cell_clear(&whole);
   return status;
 }
 
-/* Says why the numbers are large where the contact matrix is nearly singular. */
-static void mention_condition(ric_orbit *orbit) {
+/* Adds the condition, which explains large numbers, where the contact matrix is nearly singular. */
+static void add_condition(ric_orbit *orbit) {
   if (orbit->condition > 1e3 && orbit->outcome == RIC_INADMISSIBLE)
     add(orbit, "; near a singular contact matrix, condition %.2g", orbit->condition);
 }
@@ -463,7 +464,7 @@ ric_status chain_verdict(ric_orbit_solver *s, const ric_chain *chain, const ric_
     return RIC_OK;
   }
   bool decided;
-  RIC_TRY(judge_resonances(chain, pattern, o->resonance_tol, orbit, &decided, error));
+  RIC_TRY(classify_resonances(chain, pattern, o->resonance_tol, orbit, &decided, error));
   if (!decided && one_of_many) {
     decided = true;
     orbit->outcome = RIC_RESONANT;
@@ -476,6 +477,6 @@ ric_status chain_verdict(ric_orbit_solver *s, const ric_chain *chain, const ric_
   }
   admissibility_find(&f, orbit);
   if (o->method == RIC_METHOD_IMPULSE)
-    mention_condition(orbit);
+    add_condition(orbit);
   return RIC_OK;
 }

@@ -1,11 +1,11 @@
-/* The outcome of an orbit and its reason in words, however the orbit was found. Internal to the library. */
+/* The outcome of an orbit and its reason in words, for all methods. Internal to the library. */
 #ifndef RICOCHET_ADMISSIBILITY_H
 #define RICOCHET_ADMISSIBILITY_H
 
 #include "impact/gap_watch.h"
 #include "ricochet/orbit.h"
 
-/** What obstacles are called: "particle 3 passes its wall", "the motion passes obstacle 3". */
+/** Names of obstacles in reasons: "particle 3 passes its wall", "the motion passes obstacle 3". */
 typedef struct obstacle_names {
   const char *noun;              /* of coordinates; NULL: obstacles have numbers only */
   const ric_obstacle *obstacles; /* [count] at coordinates; NULL with a noun: floors, with the numbers of particles */
@@ -14,7 +14,7 @@ typedef struct obstacle_names {
 
 obstacle_names obstacle_names_of(const ric_system *system);
 
-/** What the outcome follows from, besides the impacts of the orbit. */
+/** Facts, besides the impacts of the orbit, that its outcome follows from. */
 typedef struct orbit_facts {
   obstacle_names names;
   const gap_watch *gaps;
@@ -22,7 +22,7 @@ typedef struct orbit_facts {
   bool out_of_order;
 } orbit_facts;
 
-/** Sets the clearance: the smallest gap of what the orbit does not hit. */
+/** Sets the clearance: the smallest gap of the obstacles that are not hit. */
 void admissibility_clearance(const orbit_facts *f, ric_orbit *orbit);
 
 /** Sets the outcome of an orbit that satisfies its equations: `admissible`; `inadmissible`, with what is violated first
@@ -30,17 +30,18 @@ void admissibility_clearance(const orbit_facts *f, ric_orbit *orbit);
  *  @param orbit  its period and impacts are read */
 void admissibility_find(const orbit_facts *f, ric_orbit *orbit);
 
-/** Adds to a reason what makes the orbit inadmissible, if anything does: for outcomes that leave that open. */
+/** Appends a violation, if there is one, to a reason: for outcomes that do not decide whether the orbit is
+ *  admissible. */
 void admissibility_add_violation(const orbit_facts *f, ric_orbit *orbit);
 
 /** Makes it `failed`: a residual is larger than allowed. */
 void admissibility_violated(ric_orbit *orbit, double residual, double allowed);
 
-/** Makes it `grazing`, a linear mode that reaches the obstacles without impulses, or `resonant`, a mode that vanishes
- * at all contacts; sets the mode. */
-void admissibility_resonant(ric_orbit *orbit, bool carried, size_t mode, unsigned harmonic);
+/** Makes it `grazing` if resonant modes satisfy the contact conditions without impulses, or `resonant` if a mode
+ *  vanishes at all contacts; sets the mode. */
+void admissibility_resonant(ric_orbit *orbit, bool without_impulses, size_t mode, unsigned harmonic);
 
-/** Text of the first kind of resonance, and of a gap that is zero. */
+/** Texts of the first kind of resonance, and of a gap that is zero. */
 void admissibility_write_mode(char *text, size_t bytes, size_t mode, double harmonic);
 void admissibility_write_grazing(char *text, size_t bytes, const obstacle_names *names, const gap_found *gap);
 

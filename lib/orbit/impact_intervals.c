@@ -1,8 +1,8 @@
-/* The intervals of periods at which the orbits of a family are admissible, and what ends them.
+/* The intervals of periods at which the orbits of a family are admissible, and the reasons of their ends.
  *
  * Resonances cut the range into cells, in each of which S falls from +infinity to -infinity; its zero, the blow-up,
- * cuts a cell into two pieces. On one of them the impulse pulls. On the other the margin of the orbits
- * (impact_modes.h) is a continuous function of the period, and changes of its sign are grazing contacts. */
+ * cuts a cell into two pieces. On one of them the impulse is negative. On the other the margin of the orbits
+ * (impact_modes.h) is a continuous function of the period, and changes of its sign are grazing points. */
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
@@ -16,10 +16,10 @@
 
 enum { DEFAULT_SAMPLES = 64, MOST_SAMPLES = 1000000, MOST_ITERATIONS = 200, DIP_STEPS = 40 };
 
-/* Resonances nearer to each other than this, relatively, are one; pieces shorter are none. */
+/* Resonances nearer to each other than this, relatively, count as one; shorter pieces are skipped. */
 static const double merge_tol = 1e-12;
-/* The first and the last sample of a piece lie this part of its length from its ends, and not nearer than merge_tol:
- * within that there may be another resonance or blow-up. */
+/* The first and the last sample of a piece have this distance from its ends, as a part of its length, but at least
+ * merge_tol: within that there may be another resonance or blow-up. */
 static const double end_part = 1e-9;
 
 const char *ric_interval_end_name(ric_interval_end end) {
@@ -31,7 +31,7 @@ const char *ric_interval_end_name(ric_interval_end end) {
   return (unsigned)end < RIC_INTERVAL_ENDS ? names[end] : "unknown end";
 }
 
-/* Where something happens to the family. */
+/* A period at which an interval ends. */
 typedef struct mark {
   double period;
   ric_interval_end end;
@@ -46,12 +46,12 @@ typedef struct search {
   ric_impact_modes *modes;
   double low, high;
   size_t samples;
-  sample *list; /* [2 samples + 4] those of a piece, with what is put between them */
+  sample *list; /* [2 samples + 4] samples of a piece, with the minima added between them */
   size_t count;
   mark from;       /* the beginning of the next interval */
   ric_orbit orbit; /* in the middle of one */
   gsl_root_fsolver *brent;
-  int (*seen)(const ric_impact_interval *interval, void *user);
+  int (*visit)(const ric_impact_interval *interval, void *user);
   void *user;
   bool stopped;
   ric_error *error;
@@ -63,7 +63,8 @@ static double margin_function(double period, void *user) {
   return impact_modes_margin(user, period, NULL);
 }
 
-/* S between two resonances, at which rounding may take it to the other side of a pole. */
+/* S between two resonances. Rounding may give a period at one of them the sign beyond the pole: the limit is
+ * returned there. */
 typedef struct cell {
   const ric_impact_modes *modes;
   double low, high;
@@ -100,8 +101,8 @@ static void describe_middle(search *s, ric_impact_interval *interval) {
     snprintf(interval->reason, sizeof interval->reason, "%s", s->orbit.reason);
 }
 
-/* Hands out what lies between s->from and here. */
-static void emit(search *s, const mark *to, bool admissible) {
+/* Reports the interval from s->from to this mark. */
+static void report_interval(search *s, const mark *to, bool admissible) {
   ric_impact_interval interval = {.low = s->from.period,
                                   .high = to->period,
                                   .outcome = admissible ? RIC_ADMISSIBLE : RIC_INADMISSIBLE,
@@ -111,16 +112,16 @@ static void emit(search *s, const mark *to, bool admissible) {
   snprintf(interval.high_reason, sizeof interval.high_reason, "%s", to->reason);
   describe_middle(s, &interval);
   s->from = *to;
-  s->stopped = s->seen(&interval, s->user) != 0;
+  s->stopped = s->visit(&interval, s->user) != 0;
 }
 
-static ric_status graze(search *s, const sample *before, const sample *after) {
+static ric_status end_at_grazing(search *s, const sample *before, const sample *after) {
   gap_found gap;
-  mark touch = {.end = RIC_INTERVAL_GRAZING};
-  RIC_TRY(find_zero(s, margin_function, s->modes, before->period, after->period, &touch.period));
-  impact_modes_margin(s->modes, touch.period, &gap);
-  admissibility_write_grazing(touch.reason, sizeof touch.reason, &s->modes->names, &gap);
-  emit(s, &touch, before->margin > 0);
+  mark grazing = {.end = RIC_INTERVAL_GRAZING};
+  RIC_TRY(find_zero(s, margin_function, s->modes, before->period, after->period, &grazing.period));
+  impact_modes_margin(s->modes, grazing.period, &gap);
+  admissibility_write_grazing(grazing.reason, sizeof grazing.reason, &s->modes->names, &gap);
+  report_interval(s, &grazing, before->margin > 0);
   return RIC_OK;
 }
 
@@ -128,9 +129,8 @@ static void add_sample(search *s, double period) {
   s->list[s->count++] = (sample){period, margin_function(period, s->modes)};
 }
 
-/* Where the margin comes nearest to zero from either side between two periods: golden section, which stops beyond zero.
- */
-static sample look_into_dip(search *s, const sample *left, const sample *right) {
+/* Golden-section search for the smallest |margin| between two periods; it stops when the sign changes. */
+static sample minimise_margin(search *s, const sample *left, const sample *right) {
   static const double golden = 0.61803398874989485;
   double a = left->period, b = right->period, sign = copysign(1, left->margin);
   sample x = {b - golden * (b - a), 0}, y = {a + golden * (b - a), 0};
@@ -156,8 +156,9 @@ static int by_period(const void *a, const void *b) {
   return x->period < y->period ? -1 : x->period > y->period;
 }
 
-/* Samples that bracket all changes of sign, as far as the first ones show them. */
-static void take_samples(search *s, double low, double high) {
+/* Samples that bracket the changes of sign of the margin, including pairs of them next to a minimum of the first
+ * samples. */
+static void sample_margins(search *s, double low, double high) {
   double nearest = fmax(end_part * (high - low), fmin(merge_tol * high, (high - low) / 4));
   s->count = 0;
   low += nearest;
@@ -171,21 +172,21 @@ static void take_samples(search *s, double low, double high) {
     double sign = copysign(1, x->margin), own = sign * x->margin;
     if (!(own <= sign * x[-1].margin && own < sign * x[1].margin))
       continue;
-    sample dip = look_into_dip(s, x - 1, x + 1);
+    sample dip = minimise_margin(s, x - 1, x + 1);
     if (sign * dip.margin <= 0)
       s->list[s->count++] = dip;
   }
   qsort(s->list, s->count, sizeof *s->list, by_period);
 }
 
-/* The piece from s->from to here on which the impulse pushes. */
+/* Intervals of the piece from s->from to this mark, on which the impulse is positive. */
 static ric_status search_piece(search *s, const mark *to) {
-  take_samples(s, s->from.period, to->period);
+  sample_margins(s, s->from.period, to->period);
   for (size_t i = 0; i + 1 < s->count && !s->stopped; i++)
     if ((s->list[i].margin > 0) != (s->list[i + 1].margin > 0))
-      RIC_TRY(graze(s, &s->list[i], &s->list[i + 1]));
+      RIC_TRY(end_at_grazing(s, &s->list[i], &s->list[i + 1]));
   if (!s->stopped)
-    emit(s, to, s->list[s->count - 1].margin > 0);
+    report_interval(s, to, s->list[s->count - 1].margin > 0);
   return RIC_OK;
 }
 
@@ -198,11 +199,11 @@ static ric_status search_part(search *s, const mark *to, int sign) {
   if (to->period > s->high * (1 - merge_tol))
     end = (mark){.period = s->high, .end = RIC_INTERVAL_BOUND};
   if (!(end.period - s->from.period > merge_tol * end.period))
-    return RIC_OK; /* both are one: the next interval begins where the last one ends */
+    return RIC_OK; /* both ends count as one: the next interval begins where the last one ends */
   bool pushes = o->side * o->position * sign > 0;
   if (pushes)
     return search_piece(s, &end);
-  emit(s, &end, false);
+  report_interval(s, &end, false);
   return RIC_OK;
 }
 
@@ -213,7 +214,7 @@ static mark resonance(const ric_impact_modes *m, double period, bool after) {
   mark found = {.period = after ? INFINITY : 0, .end = RIC_INTERVAL_RESONANCE};
   for (size_t j = 0; j < m->n; j++) {
     double shortest = 2 * pi / m->frequency[j], l = floor(period * (1 + merge_tol) / shortest) + (after ? 1 : 0);
-    if (m->seen[j] == 0 || !(after ? l * shortest < found.period : l * shortest > found.period))
+    if (m->phi_hit[j] == 0 || !(after ? l * shortest < found.period : l * shortest > found.period))
       continue;
     found.period = l * shortest;
     admissibility_write_mode(found.reason, sizeof found.reason, j, l);
@@ -229,7 +230,7 @@ static ric_status find_blow_up(search *s, double low, double high, mark *blow_up
   return find_zero(s, balance_function, &c, low, high, &blow_up->period);
 }
 
-static ric_status walk(search *s) {
+static ric_status search_cells(search *s) {
   mark pole = resonance(s->modes, s->low, false), blow_up = {0};
   s->from = (mark){.period = s->low, .end = RIC_INTERVAL_BOUND};
   while (pole.period < s->high && !s->stopped) {
@@ -256,14 +257,14 @@ static ric_status check_range(const ric_impact_modes *m, double low, double high
 }
 
 ric_status ric_impact_modes_intervals(ric_impact_modes *modes, double low, double high, size_t samples,
-                                      int (*seen)(const ric_impact_interval *interval, void *user), void *user,
+                                      int (*visit)(const ric_impact_interval *interval, void *user), void *user,
                                       ric_error *error) {
   RIC_TRY(check_range(modes, low, high, samples, error));
   search s = {.modes = modes,
               .low = low,
               .high = high,
               .samples = samples > 0 ? samples : DEFAULT_SAMPLES,
-              .seen = seen,
+              .visit = visit,
               .user = user,
               .error = error};
   gsl_error_handler_t *handler = gsl_set_error_handler_off();
@@ -271,7 +272,7 @@ ric_status ric_impact_modes_intervals(ric_impact_modes *modes, double low, doubl
   s.brent = gsl_root_fsolver_alloc(gsl_root_fsolver_brent);
   ric_status status = ric_orbit_init(&s.orbit, modes->n, 1, error);
   if (status == RIC_OK)
-    status = s.list && s.brent ? walk(&s) : ric_fail(error, RIC_ENOMEM, "no memory for %zu samples", s.samples);
+    status = s.list && s.brent ? search_cells(&s) : ric_fail(error, RIC_ENOMEM, "no memory for %zu samples", s.samples);
   ric_orbit_clear(&s.orbit);
   free(s.list);
   if (s.brent)

@@ -15,14 +15,14 @@
 #include "ricochet/normal_modes.h"
 #include "ricochet/polynomial.h"
 
-/* Squares of frequencies nearer than this to each other, relative to the largest, are those of one space of modes: ten
- * times and more what rounding makes of equal ones, also with a mass matrix. Slow modes of stiff systems would be
- * far apart then: they must be nearer than slow_tol relative to themselves, or than rounding. */
+/* Squares of frequencies nearer than this to each other, relative to the largest, are those of one eigenspace: ten
+ * times and more the rounding of equal ones, also with a mass matrix. By this alone distinct slow modes of stiff
+ * systems would count as equal: they must also be nearer than slow_tol relative to themselves, or than rounding. */
 static const double same_tol = 1e-12, slow_tol = 1e-9;
-/* Shares of M^-1_kk (their roots) below it are rounding of modes that do not move k. */
-static const double hidden_tol = 1e-11;
+/* Contributions to M^-1_kk (their roots) below it are rounding of modes that do not move k. */
+static const double moving_tol = 1e-11;
 
-/* An obstacle in the same place is touched by every orbit: rounding would decide whether it is passed. */
+/* Two obstacles in the same place: every orbit would graze the other one, and rounding would decide on its sign. */
 static ric_status check_others(const ric_system *system, size_t obstacle, ric_error *error) {
   const ric_obstacle *hit = &system->obstacles[obstacle];
   for (size_t j = 0; j < system->obstacle_count; j++) {
@@ -59,7 +59,7 @@ static ric_status allocate_modes(ric_impact_modes *m, ric_error *error) {
   double *store = m->block;
   m->shape = number_store_take(&store, n * n);
   m->frequency = number_store_take(&store, n);
-  m->seen = number_store_take(&store, n);
+  m->phi_hit = number_store_take(&store, n);
   m->mobility = number_store_take(&store, n);
   m->amplitude = number_store_take(&store, n);
   m->reach = number_store_take(&store, n);
@@ -73,24 +73,24 @@ static ric_status allocate_modes(ric_impact_modes *m, ric_error *error) {
   return RIC_OK;
 }
 
-static bool are_one(const ric_impact_modes *m, double slower, double faster) {
+static bool are_equal(const ric_impact_modes *m, double slower, double faster) {
   double below = slower / m->fastest, above = faster / m->fastest; /* whose squares do not underflow */
   double rounding = 8 * DBL_EPSILON * (double)m->n;                /* as in normal_modes.c */
   return above * above - below * below <= fmax(rounding, fmin(same_tol, slow_tol * above * above));
 }
 
-/* Number of modes from `first` on that belong to one frequency. */
+/* Number of modes from `first` on that have one frequency. */
 static size_t multiplicity(const ric_impact_modes *m, size_t first) {
   size_t count = 1;
   const double *w = m->frequency + first;
-  while (first + count < m->n && are_one(m, w[count - 1], w[count]))
+  while (first + count < m->n && are_equal(m, w[count - 1], w[count]))
     count++;
   return count;
 }
 
-/* A mode of a frequency that several have may be any of a space. Those are chosen of which only the first moves k: a
- * reflection takes the shapes' components at k, in s, to the first of them. */
-static void gather(ric_impact_modes *m, size_t first, size_t count) {
+/* Modes of a multiple frequency are any basis of their eigenspace. This chooses the one of which only the first mode
+ * moves k: a reflection maps the shapes' components at k, in s, to the first of them. */
+static void separate_multiple(ric_impact_modes *m, size_t first, size_t count) {
   size_t n = m->n;
   double *shape = m->shape + first * n, *s = m->q, length = 0, mean = 0;
   for (size_t a = 0; a < count; a++) {
@@ -115,21 +115,21 @@ static void gather(ric_impact_modes *m, size_t first, size_t count) {
     shape[a * n + m->hit] = 0;
 }
 
-/* Which modes move k, and M^-1 e_k = sum_j phi_j phi_j(k). */
-static void look_at_modes(ric_impact_modes *m) {
+/* Finds the modes that move k, and M^-1 e_k = sum_j phi_j phi_j(k). */
+static void find_moving_modes(ric_impact_modes *m) {
   size_t n = m->n, count;
   m->fastest = m->frequency[n - 1];
   for (size_t j = 0; j < n; j += count) {
     count = multiplicity(m, j);
     if (count > 1)
-      gather(m, j, count);
+      separate_multiple(m, j, count);
   }
   for (size_t j = 0; j < n; j++)
     for (size_t i = 0; i < n; i++)
       m->mobility[i] += m->shape[j * n + i] * m->shape[j * n + m->hit];
   for (size_t j = 0; j < n; j++) {
     double phi = m->shape[j * n + m->hit];
-    m->seen[j] = fabs(phi) > hidden_tol * sqrt(m->mobility[m->hit]) ? phi : 0;
+    m->phi_hit[j] = fabs(phi) > moving_tol * sqrt(m->mobility[m->hit]) ? phi : 0;
   }
 }
 
@@ -141,7 +141,7 @@ static ric_status build_modes(ric_impact_modes *m, const ric_system *system, ric
   if (!(m->frequency[0] > 0))
     return ric_fail(error, RIC_EINVAL, "frequency of the slowest mode = %g, expected > 0: the stiffness is singular",
                     m->frequency[0]);
-  look_at_modes(m);
+  find_moving_modes(m);
   return RIC_OK;
 }
 
@@ -198,18 +198,18 @@ static ric_status check_period(const ric_impact_modes *m, double period, ric_err
 /* The response of a period; its C_j are in modes->amplitude. */
 typedef struct periodic_response {
   double period;
-  double impulse;    /* p on the coordinate, 0 at a resonance; positive: upwards */
-  double condition;  /* bound of the largest displacement over |b| */
-  bool carried;      /* modes at resonance reach the obstacle without an impulse: `mode` is the fastest of them */
-  bool free;         /* `mode` is at resonance and does not move k: any amplitude of it may be added */
-  size_t mode;       /* of `carried` and `free` */
-  unsigned harmonic; /* its l */
+  double impulse;       /* p on the coordinate, 0 at a resonance; positive: upwards */
+  double condition;     /* bound of the largest displacement over |b| */
+  bool without_impulse; /* modes at resonance reach the obstacle without an impulse: `mode` is the fastest of them */
+  bool free;            /* `mode` is at resonance and does not move k: its amplitude is free */
+  size_t mode;          /* of `without_impulse` and `free` */
+  unsigned harmonic;    /* its l */
 } periodic_response;
 
 /* Term of S; infinite at a resonance. */
 static double term(const ric_impact_modes *m, size_t j, double period) {
   double half = m->frequency[j] * period / 2;
-  return m->seen[j] == 0 ? 0 : m->seen[j] * m->seen[j] * cos(half) / (2 * m->frequency[j] * sin(half));
+  return m->phi_hit[j] == 0 ? 0 : m->phi_hit[j] * m->phi_hit[j] * cos(half) / (2 * m->frequency[j] * sin(half));
 }
 
 double response_balance(const ric_impact_modes *modes, double period) {
@@ -232,50 +232,52 @@ static double harmonic_of(const ric_impact_modes *m, size_t j, double period, do
 static void find_resonance(const ric_impact_modes *m, double tolerance, periodic_response *r) {
   for (size_t j = 0; j < m->n; j++) {
     double l = harmonic_of(m, j, r->period, tolerance);
-    bool moves = m->seen[j] != 0;
-    if (l < 1 || (r->carried && !moves))
+    bool moves = m->phi_hit[j] != 0;
+    if (l < 1 || (r->without_impulse && !moves))
       continue;
-    r->carried = moves;
+    r->without_impulse = moves;
     r->free = !moves;
     r->mode = j;
     r->harmonic = (unsigned)l;
   }
 }
 
-/* The limit: modes at resonance share the way to the obstacle as phi_j(k)^2 / w_j^2, the ratio of the poles of S. */
-static void set_carried(ric_impact_modes *m, double tolerance, const periodic_response *r) {
+/* The limit at a resonance: displacements of the resonant modes at k have the ratio phi_j(k)^2 / w_j^2, that of the
+ * poles of S. */
+static void set_resonant_amplitudes(ric_impact_modes *m, double tolerance, const periodic_response *r) {
   double reached = 0, position = m->obstacles[m->obstacle].position;
   for (size_t j = 0; j < m->n; j++) {
-    bool is = m->seen[j] != 0 && harmonic_of(m, j, r->period, tolerance) >= 1;
-    double share = is ? m->seen[j] / (m->frequency[j] * m->frequency[j]) : 0;
-    reached += share * m->seen[j];
+    bool is = m->phi_hit[j] != 0 && harmonic_of(m, j, r->period, tolerance) >= 1;
+    double share = is ? m->phi_hit[j] / (m->frequency[j] * m->frequency[j]) : 0;
+    reached += share * m->phi_hit[j];
     m->amplitude[j] = share;
   }
   for (size_t j = 0; j < m->n; j++)
     m->amplitude[j] *= position / reached * copysign(1, cos(m->frequency[j] * r->period / 2));
 }
 
-static void set_driven(ric_impact_modes *m, periodic_response *r) {
+static void set_driven_amplitudes(ric_impact_modes *m, periodic_response *r) {
   double sum = 0;
   for (size_t j = 0; j < m->n; j++)
     sum += term(m, j, r->period);
   r->impulse = m->obstacles[m->obstacle].position / sum;
   for (size_t j = 0; j < m->n; j++)
-    m->amplitude[j] =
-        m->seen[j] == 0 ? 0 : r->impulse * m->seen[j] / (2 * m->frequency[j] * sin(m->frequency[j] * r->period / 2));
+    m->amplitude[j] = m->phi_hit[j] == 0
+                          ? 0
+                          : r->impulse * m->phi_hit[j] / (2 * m->frequency[j] * sin(m->frequency[j] * r->period / 2));
 }
 
-/** @param resonance_tol  on |w_j T / (2 pi) - l|; 0 leaves resonances out unless a sine is zero
- *  Sets modes->amplitude and modes->reach; they may be infinite. */
+/** @param resonance_tol  on |w_j T / (2 pi) - l|; 0: only periods at which a sine is zero are resonant. Sets
+ *  modes->amplitude and modes->reach; they may be infinite. */
 static void response_find(ric_impact_modes *modes, double period, double resonance_tol, periodic_response *response) {
   size_t n = modes->n;
   double most = 0;
   *response = (periodic_response){.period = period};
   find_resonance(modes, resonance_tol, response);
-  if (response->carried)
-    set_carried(modes, resonance_tol, response);
+  if (response->without_impulse)
+    set_resonant_amplitudes(modes, resonance_tol, response);
   else
-    set_driven(modes, response);
+    set_driven_amplitudes(modes, response);
   memset(modes->reach, 0, n * sizeof *modes->reach);
   for (size_t j = 0; j < n; j++)
     for (size_t i = 0; modes->amplitude[j] != 0 && i < n; i++)
@@ -325,7 +327,7 @@ typedef struct half_period {
   double length;
 } half_period;
 
-static half_period cut(ric_impact_modes *m, double period) {
+static half_period cut_half_period(ric_impact_modes *m, double period) {
   double segments = ceil(period / 2 * m->fastest / longest_angle);
   half_period h = {.segments = (size_t)segments, .length = period / 2 / segments};
   for (size_t j = 0; j < m->n; j++) {
@@ -364,9 +366,9 @@ static void expand(const ric_impact_modes *m, const ric_obstacle *o, double *c) 
   c[0] -= o->side * o->position;
 }
 
-/* --- its gaps ----------------------------------------------------------------------------------------------------- */
+/* --- gaps --------------------------------------------------------------------------------------------------------- */
 
-/* A bound from below for the whole motion. */
+/* A lower bound for the whole motion. */
 static double bound(const ric_impact_modes *m, size_t obstacle) {
   const ric_obstacle *o = &m->obstacles[obstacle];
   return -o->side * o->position - m->reach[o->coordinate];
@@ -393,7 +395,8 @@ static void watch_segment(ric_impact_modes *m, double start, double length, gap_
 /* On minima, relative: rounding of the polynomials. */
 static const double minimum_tol = 1e-14;
 
-/* As orbit.h says: displacements at 0 and T/2, and speeds over the largest frequency for what lies between. */
+/* As in orbit.h: displacements at 0 and T/2, and speeds over the largest frequency, which stand for the times
+ * between. */
 static double largest_displacement(ric_impact_modes *m, const periodic_response *r) {
   response_state(m, r, r->period / 2, m->q, NULL);
   double at_half = largest(m->q, m->n);
@@ -401,11 +404,11 @@ static double largest_displacement(ric_impact_modes *m, const periodic_response 
   return fmax(fmax(at_half, largest(m->q, m->n)), largest(m->v, m->n) / m->fastest);
 }
 
-/* @param zero  gaps below -zero are violations, relative to the largest displacement, which is returned; m->q and m->v
- *              are the state at 0 then */
+/* @param zero  gaps below -zero are violations, relative to the largest displacement, which is returned; afterwards
+ * m->q and m->v are the state at 0 */
 static double find_gaps(ric_impact_modes *m, const periodic_response *r, double zero, gap_watch *w) {
   double scale = largest_displacement(m, r);
-  half_period h = cut(m, r->period);
+  half_period h = cut_half_period(m, r->period);
   gap_watch_begin(w, minimum_tol * scale / 2, zero * scale, INFINITY);
   for (size_t s = 0; s < h.segments; s++) {
     double start = (double)s * h.length;
@@ -427,29 +430,29 @@ double impact_modes_margin(ric_impact_modes *modes, double period, gap_found *le
 
 /* --- the orbit of a period ---------------------------------------------------------------------------------------- */
 
-static void fill(const ric_impact_modes *m, const periodic_response *r, ric_orbit *orbit) {
+static void fill_orbit(const ric_impact_modes *m, const periodic_response *r, ric_orbit *orbit) {
   size_t bytes = m->n * sizeof *m->q;
   const ric_obstacle *hit = &m->obstacles[m->obstacle];
   memcpy(orbit->q, m->q, bytes);
   memcpy(orbit->v, m->v, bytes);
   response_state(m, r, r->period / 2, orbit->q_half, orbit->v_half);
-  orbit->impulse[0] = r->carried ? 0 : hit->side * r->impulse; /* no -0 */
-  orbit->gap_rate[0] = r->carried ? 0 : -response_gap_rate(m, r);
+  orbit->impulse[0] = r->without_impulse ? 0 : hit->side * r->impulse; /* no -0 */
+  orbit->gap_rate[0] = r->without_impulse ? 0 : -response_gap_rate(m, r);
   orbit->energy = response_energy(m);
   orbit->residual = fabs(m->q[m->hit] - hit->position);
 }
 
-/* Impulses of the shortest periods underflow: then the obstacle is not reached. */
-static void judge(ric_impact_modes *m, const periodic_response *r, ric_orbit *orbit) {
+/* Impulses of the shortest periods underflow: then the residual shows that the obstacle is not reached. */
+static void set_outcome(ric_impact_modes *m, const periodic_response *r, ric_orbit *orbit) {
   gap_watch gaps;
   double scale = find_gaps(m, r, m->options.grazing_tol, &gaps), allowed = m->options.residual_tol * scale;
   const orbit_facts f = {.names = m->names, .gaps = &gaps, .slow = gaps.zero * m->fastest};
-  fill(m, r, orbit);
+  fill_orbit(m, r, orbit);
   admissibility_clearance(&f, orbit);
   if (!(orbit->residual <= allowed)) {
     admissibility_violated(orbit, orbit->residual, allowed);
-  } else if (r->carried || r->free) {
-    admissibility_resonant(orbit, r->carried, r->mode, r->harmonic);
+  } else if (r->without_impulse || r->free) {
+    admissibility_resonant(orbit, r->without_impulse, r->mode, r->harmonic);
     admissibility_add_violation(&f, orbit);
   } else {
     admissibility_find(&f, orbit);
@@ -482,7 +485,7 @@ ric_status ric_impact_modes_orbit(ric_impact_modes *modes, double period, ric_or
   orbit->impact_time[0] = 0;
   orbit->impact_obstacle[0] = modes->obstacle;
   if (!singular)
-    judge(modes, &response, orbit);
+    set_outcome(modes, &response, orbit);
   return RIC_OK;
 }
 

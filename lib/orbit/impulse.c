@@ -11,8 +11,8 @@
 #include "model/image_ring.h"
 #include "numeric/constants.h"
 
-/* Waves with n |sin d| below it are set apart. What they leave in the contact matrix, 2 / n times 1 / (2 omega |sin
- * d|), is then of order one, so that no digits cancel there unless the matrix is singular. */
+/* Waves with n |sin d| below it are separated from the response. Their remainder in the contact matrix, 2 / n times
+ * 1 / (2 omega |sin d|), is then of order one, so that no digits cancel there unless the matrix is singular. */
 static const double closeness = 0.5;
 
 /* Wave numbers [first, last] that belong to modes: the odd part of the image ring has no constant and no alternating
@@ -46,7 +46,7 @@ static void response_clear(response *r) {
   *r = (response){0};
 }
 
-/** Plans and tables for chains with these particles and ends; does nothing when they are there already. */
+/** Makes plans and tables for chains with these particles and ends, unless they exist already. */
 static ric_status response_prepare(response *r, const ric_chain *chain, ric_error *error) {
   if (r->transform && r->shape.particles == chain->particles && r->shape.ends == chain->ends)
     return RIC_OK;
@@ -72,8 +72,8 @@ size_t response_modes(const ric_chain *chain, size_t wave, size_t modes[2]) {
   return chain->ends == RIC_ENDS_PERIODIC && wave > 0 && 2 * wave < chain->particles ? 2 : 1;
 }
 
-/* Keeps the waves closest to resonance. */
-static void remember(response *r, near_wave wave) {
+/* Keeps the waves closest to resonance, in a list of limited length. */
+static void insert_near_wave(response *r, near_wave wave) {
   if (r->near_count < RESPONSE_NEAR) {
     r->near[r->near_count++] = wave;
     return;
@@ -87,8 +87,8 @@ static void remember(response *r, near_wave wave) {
     r->near[farthest] = wave;
 }
 
-/* Takes the near waves out of the response; what remains of them is bounded. */
-static void set_apart(response *r) {
+/* Subtracts the near waves from the response; the remainder is bounded. */
+static void subtract_near_waves(response *r) {
   for (size_t i = 0; i < r->near_count; i++) {
     const near_wave *w = &r->near[i];
     r->start[w->wave] = -tan(w->distance / 2) / (2 * w->omega);
@@ -96,7 +96,7 @@ static void set_apart(response *r) {
   }
 }
 
-/** Fills start, half, near and scale. @param apart  0 leaves resonant waves in the response, for counting poles. */
+/** Fills start, half, near and scale. @param apart  0: resonant waves stay in the response, for counting poles. */
 static void response_compute(response *r, const ric_chain *chain, double period, int apart) {
   double gamma = image_ring_gamma(chain), n = (double)chain->particles, near = apart ? closeness / n : 0;
   size_t pair[2];
@@ -112,14 +112,14 @@ static void response_compute(response *r, const ric_chain *chain, double period,
     r->start[j] = cos(d) / (2 * omega * s);
     int close = l >= 1 && fabs(s) < near;
     if (close)
-      remember(r, (near_wave){.wave = j, .harmonic = (unsigned)l, .omega = omega, .distance = d});
+      insert_near_wave(r, (near_wave){.wave = j, .harmonic = (unsigned)l, .omega = omega, .distance = d});
     double largest = close ? 1 / (2 * omega) : fabs(r->half[j]);
     r->scale += largest * (double)response_modes(chain, j, pair) / n;
   }
-  set_apart(r);
+  subtract_near_waves(r);
 }
 
-/** Fills the kernels from the responses; the one for half a period only when asked. */
+/** Fills the kernels from the responses; that for half a period only on request. */
 static void response_kernels(response *r, int with_half) {
   size_t bytes = lattice_transform_length(r->transform) * sizeof *r->start;
   memcpy(r->start_kernel, r->start, bytes);
@@ -180,8 +180,8 @@ static void list_border(contact_system *c, const unit_cell *cell, const response
     }
 }
 
-/* Eigenvalues, largest first, and eigenvectors of a symmetric matrix. One and two modes, the usual case, are a rotation
- * by hand because the library's workspace would be allocated in a hot loop. */
+/* Eigenvalues, largest first, and eigenvectors of a symmetric matrix. One and two modes, the usual case, are a
+ * rotation in closed form: GSL's workspace would be allocated in a hot loop. */
 static int diagonalise(double *gram, size_t count, double *values, double *vectors) {
   if (count <= 2) {
     double angle = count == 2 ? atan2(2 * gram[1], gram[0] - gram[3]) / 2 : 0, c = cos(angle), s = sin(angle);
@@ -203,10 +203,10 @@ static int diagonalise(double *gram, size_t count, double *values, double *vecto
   return code ? code : gsl_eigen_symmv_sort(&e.vector, &v.matrix, GSL_EIGEN_SORT_VAL_DESC);
 }
 
-ric_status contact_visible(const unit_cell *cell, const border_mode *modes, size_t count, double *rotation,
-                           size_t *visible, ric_error *error) {
+ric_status contact_observable(const unit_cell *cell, const border_mode *modes, size_t count, double *rotation,
+                              size_t *observable, ric_error *error) {
   double gram[BORDER_MODES * BORDER_MODES], vectors[BORDER_MODES * BORDER_MODES], values[BORDER_MODES];
-  *visible = 0;
+  *observable = 0;
   if (count == 0)
     return RIC_OK;
   for (size_t i = 0; i < count * count; i++)
@@ -224,23 +224,23 @@ ric_status contact_visible(const unit_cell *cell, const border_mode *modes, size
                     gsl_strerror(code));
   /* A mode of unit length has squares of order 1/n at the contacts; rounding leaves 1e-16 of that. */
   double least = 1e-13 / (double)cell->chain.particles;
-  while (*visible < count && values[*visible] > least)
-    (*visible)++;
+  while (*observable < count && values[*observable] > least)
+    (*observable)++;
   for (size_t i = 0; rotation && i < count * count; i++)
     rotation[i] = vectors[i];
   return RIC_OK;
 }
 
-/* Columns of the combinations that the contacts see, group by group. */
-static ric_status combine(contact_system *c, const unit_cell *cell, ric_error *error) {
+/* Columns of the combinations that do not vanish at all contacts, group by group. */
+static ric_status combine_modes(contact_system *c, const unit_cell *cell, ric_error *error) {
   double rotation[BORDER_MODES * BORDER_MODES];
   c->column_count = 0;
   for (size_t first = 0, count; first < c->border_count; first += count) {
-    size_t visible;
+    size_t observable;
     for (count = 1; first + count < c->border_count && c->border[first + count].group == c->border[first].group;)
       count++;
-    RIC_TRY(contact_visible(cell, &c->border[first], count, rotation, &visible, error));
-    for (size_t v = 0; v < visible; v++, c->column_count++)
+    RIC_TRY(contact_observable(cell, &c->border[first], count, rotation, &observable, error));
+    for (size_t v = 0; v < observable; v++, c->column_count++)
       for (size_t a = 0; a < c->border_count; a++)
         c->weights[a][c->column_count] = a >= first && a < first + count ? rotation[(a - first) * count + v] : 0;
   }
@@ -251,10 +251,10 @@ static double entry(const unit_cell *cell, const response *r, const contact *k, 
   return image_ring_entry(&cell->chain, k->role == l->role ? r->start_kernel : r->half_kernel, k->site, l->site);
 }
 
-/* One border column and row: a combination at the contacts, scaled to the size of the responses. Its weights are scaled
- * along, so that the solution is in units of the modes. Combinations of a group share stiffness where their modes
- * differ in it, within the tolerance of a resonance. */
-static void border(contact_system *c, const unit_cell *cell, size_t column, size_t size, double scale) {
+/* One border column and row: a combination at the contacts, scaled to the size of the responses. Its weights get the
+ * same scale, so that the solution is in units of the modes. Where the modes of a group differ in stiffness,
+ * within the tolerance of a resonance, its combinations are coupled. */
+static void fill_border(contact_system *c, const unit_cell *cell, size_t column, size_t size, double scale) {
   size_t m = cell->impacts, at = m + column;
   double largest = 0;
   for (size_t k = 0; k < m; k++) {
@@ -291,7 +291,7 @@ static void assemble(contact_system *c, const unit_cell *cell, const response *r
       c->matrix[k * size + l] = c->matrix[l * size + k] = g;
     }
   for (size_t column = 0; column < c->column_count; column++)
-    border(c, cell, column, size, r->scale);
+    fill_border(c, cell, column, size, r->scale);
 }
 
 /* The smallest of the solutions of a singular system, if it has any. */
@@ -307,7 +307,7 @@ static ric_status solve_singular(contact_system *c, const unit_cell *cell, const
 
 /** Assembles and solves for the impulses p [m]. Needs the kernels of the responses.
  *
- *  Beyond options->singular_condition the solution of least norm is taken if it satisfies the equations to
+ *  Beyond options->singular_condition it returns the solution of least norm if that satisfies the equations to
  *  residual_tol; c->outcome says which. */
 static ric_status contact_solve(contact_system *c, const unit_cell *cell, const response *r,
                                 const ric_orbit_options *options, double *p, ric_error *error) {
@@ -315,7 +315,7 @@ static ric_status contact_solve(contact_system *c, const unit_cell *cell, const 
   linear_factor factor;
   RIC_TRY(reserve(c, m, error));
   list_border(c, cell, r, options->resonance_tol);
-  RIC_TRY(combine(c, cell, error));
+  RIC_TRY(combine_modes(c, cell, error));
   assemble(c, cell, r);
   linear_work work = {.tau = c->tau, .norm = c->norm, .work = c->work, .permutation = c->permutation};
   RIC_TRY(linear_solve(c->matrix, m + c->column_count, c->rhs, c->solution, &work, &factor, error));
@@ -333,7 +333,7 @@ static ric_status contact_solve(contact_system *c, const unit_cell *cell, const 
   return RIC_OK;
 }
 
-/** Smallest-to-largest eigenvalues [m] of the contact matrix, without any mode set apart. */
+/** Smallest-to-largest eigenvalues [m] of the contact matrix, with all modes in the response. */
 static ric_status contact_eigenvalues(contact_system *c, const unit_cell *cell, const response *r, double *eigenvalues,
                                       ric_error *error) {
   size_t m = cell->impacts;
@@ -380,7 +380,7 @@ static int has_both_roles(const unit_cell *cell) {
 }
 
 /* Modal coefficients of the impulses of one role, in place. */
-static void excite(const impulse *w, const unit_cell *cell, ric_role role, double *modal) {
+static void transform_impulses(const impulse *w, const unit_cell *cell, ric_role role, double *modal) {
   int any = 0;
   memset(modal, 0, cell->chain.particles * sizeof *modal);
   for (size_t k = 0; k < cell->impacts; k++)
@@ -393,7 +393,7 @@ static void excite(const impulse *w, const unit_cell *cell, ric_role role, doubl
 }
 
 /* Impulses -> positions at t = 0 and T/2 in modal coefficients. */
-static void respond(const impulse *w, const unit_cell *cell) {
+static void compute_positions(const impulse *w, const unit_cell *cell) {
   const response *r = &w->response;
   double sites = (double)image_ring_sites(&cell->chain);
   for (size_t s = 0; s < cell->chain.particles; s++) {
@@ -433,9 +433,9 @@ ric_status impulse_solve(impulse *w, const unit_cell *cell, double period, const
   *solution = w->contacts.outcome;
   if (solution->singular && !solution->solvable)
     return RIC_OK;
-  excite(w, cell, RIC_ROLE_START, r->modal_start);
-  excite(w, cell, RIC_ROLE_HALF, r->modal_half);
-  respond(w, cell);
+  transform_impulses(w, cell, RIC_ROLE_START, r->modal_start);
+  transform_impulses(w, cell, RIC_ROLE_HALF, r->modal_half);
+  compute_positions(w, cell);
   lattice_transform_inverse(r->transform, r->modal_start);
   lattice_transform_inverse(r->transform, r->modal_half);
   write_state(w, cell, state);

@@ -14,13 +14,14 @@
 
 /* Responses of the modes of a chain to unit impulses that repeat with the period T.
  *
- * For wave number j with x = omega_j T / 2 the response at the time of the impulse is cos x / (2 omega sin x), half a
- * period away it is 1 / (2 omega sin x). Close to a resonance, x = pi l + d with small d, both grow like the same
- * amplitude a (times (-1)^l at the start): that amplitude becomes an unknown of the contact equations, with
- * 2 omega sin(d) a = (impulses that excite the mode), and only the bounded remainder -tan(d/2) / (2 omega) stays in the
- * response. So the solution is computed stably up to and at the resonance, where its limit is finite. */
+ * For wave number j with x = omega_j T / 2 the response at the time of the impulse is cos x / (2 omega sin x), half
+ * a period later it is 1 / (2 omega sin x). Close to a resonance, x = pi l + d with small d, both grow in proportion
+ * to one amplitude a (with the factor (-1)^l at the start): that amplitude becomes an unknown of the contact
+ * equations, with 2 omega sin(d) a = (impulses that excite the mode), and only the bounded remainder -tan(d/2) / (2
+ * omega) stays in the response. So the solution is computed stably up to and at the resonance, where its limit is
+ * finite. */
 
-enum { RESPONSE_NEAR = 32 /* wave numbers close to resonance that are treated apart, the closest ones */ };
+enum { RESPONSE_NEAR = 32 /* wave numbers that are separated from the response: those closest to resonance */ };
 
 /** A wave number close to resonance. */
 typedef struct near_wave {
@@ -39,7 +40,7 @@ typedef struct response {
   double *start_kernel, *half_kernel; /* the same between particles, by distance on the image ring */
   double *modal_start, *modal_half;   /* work arrays for modal coefficients */
   near_wave near[RESPONSE_NEAR];
-  size_t near_count, near_dropped; /* dropped: close to resonance, too, but beyond the room for them */
+  size_t near_count, near_dropped; /* dropped: close to resonance, too, but the list is full */
   double scale; /* mean over the modes of the largest response 1 / (2 omega |sin x|); 1 / (2 omega) for the near ones */
 } response;
 
@@ -52,10 +53,10 @@ size_t response_modes(const ric_chain *chain, size_t wave, size_t modes[2]);
  *
  *   sum_l G_kl(t_k - t_l) p_l + sum_s u_ks a_s = b_k,     sum_k u_ks p_k - d_s a_s = 0,
  *
- * with u_ks = phi_s(k), times (-1)^l for impacts at T/2, and d_s = 2 omega sin(distance), which is 0 at resonance. The
- * matrix is symmetric. A combination of modes of equal d that vanishes at every contact is not excited, and at
- * resonance its amplitude is free: it is left out (0). So the unknowns are the combinations that the contacts see,
- * scaled to the size of the other entries. */
+ * with u_ks = phi_s(k), times (-1)^l for impacts at T/2, and d_s = 2 omega sin(distance), which is 0 at resonance.
+ * The matrix is symmetric. A combination of modes of equal d that vanishes at every contact is not excited, and at
+ * resonance its amplitude is free: the equations omit it (0). So the unknowns are the observable combinations, those
+ * that do not vanish at all contacts, scaled to the size of the other entries. */
 
 /** A mode that is close to resonance or at it. */
 typedef struct border_mode {
@@ -69,13 +70,13 @@ enum { BORDER_MODES = 2 * RESPONSE_NEAR };
 
 typedef struct contact_system {
   size_t capacity; /* largest m + BORDER_MODES so far */
-  double *store;   /* every array below */
+  double *store;   /* owns every array below */
   double *matrix;  /* [size][size], row-major */
   double *rhs, *solution, *tau, *norm, *work;
   size_t *permutation;
   border_mode border[BORDER_MODES];
   size_t border_count;
-  size_t column_count;                        /* combinations of border modes that the contacts see */
+  size_t column_count;                        /* observable combinations of border modes */
   double weights[BORDER_MODES][BORDER_MODES]; /* [mode][column] */
   double amplitude[BORDER_MODES];             /* a_s of the solution */
   linear_outcome outcome;
@@ -84,11 +85,11 @@ typedef struct contact_system {
 /** Displacement u_ks of a mode at a contact, with the sign of its half period. */
 double contact_shape(const unit_cell *cell, const border_mode *b, const contact *k);
 
-/** Combinations of modes that the contacts see: the rank of [contacts][modes], from its Gram matrix.
- *  @param rotation  [count][count], columns are orthonormal combinations, seen ones first; may be NULL
- *  @param visible  set to the rank */
-ric_status contact_visible(const unit_cell *cell, const border_mode *modes, size_t count, double *rotation,
-                           size_t *visible, ric_error *error);
+/** Combinations of modes that do not vanish at all contacts: the rank of [contacts][modes], from its Gram matrix.
+ *  @param rotation  [count][count], columns are orthonormal combinations, observable ones first; may be NULL
+ *  @param observable  set to the rank */
+ric_status contact_observable(const unit_cell *cell, const border_mode *modes, size_t count, double *rotation,
+                              size_t *observable, ric_error *error);
 
 /* The impulse-response form of the boundary-value problem (orbit.h), on the unit cell. */
 
@@ -103,7 +104,7 @@ typedef struct impulse {
 void impulse_clear(impulse *w);
 
 /** State of the orbit of a cell; O(n log n + m^3).
- *  @param solution  set; when it is singular and not solvable the state is left alone */
+ *  @param solution  set; when it is singular and not solvable the state is not written */
 ric_status impulse_solve(impulse *w, const unit_cell *cell, double period, const ric_orbit_options *options,
                          const boundary_state *state, linear_outcome *solution, ric_error *error);
 

@@ -12,16 +12,16 @@ enum { MOST_RESONANCES = 100000 };
 
 /* The contact matrix of the unit cell as a function of the parameter. */
 typedef struct family {
-  ric_orbit_solver *solver; /* with the cell set up */
+  ric_orbit_solver *solver; /* its cell is set up */
   ric_along along;
   double period;
-  size_t index;        /* eigenvalue looked at by the root finder */
+  size_t index;        /* of the eigenvalue whose zero is searched */
   double *eigenvalues; /* [impacts of the cell] */
   ric_status status;
   ric_error *error;
 } family;
 
-/* List of results: counts everything, keeps what fits. */
+/* List of results: counts all, stores as many as fit. */
 typedef struct collection {
   double *points, unit; /* results are divided by `unit` */
   size_t capacity, count;

@@ -68,7 +68,7 @@ void ric_orbit_clear(ric_orbit *orbit) {
 
 /* The boundary-value problem (10)-(11) of [JAP], solved with a matrix exponential: the reference. */
 
-/* Matrices and vectors of size 2n, all freed together. */
+/* Matrices and vectors, in one allocation each. */
 typedef struct dense_equations {
   size_t n;
   gsl_matrix *a, *modes;     /* [n][n]: K, work; eigenvectors of K */
@@ -153,8 +153,9 @@ static void set_row(dense_equations *d, size_t row, size_t source, int from_flow
     gsl_matrix_set(d->system, row, j, from_flow ? gsl_matrix_get(d->flow, source, j) : j == source);
 }
 
-/* The boundary conditions (8): free and half-period particles start at rest, start particles end at rest, and so on. */
-static void impose(dense_equations *d, const ric_chain *chain, const ric_pattern *pattern) {
+/* The boundary conditions (8): q(0) = b of particles hit at t = 0, v(0) = 0 of others; q(T/2) = b of particles hit
+ * at T/2, v(T/2) = 0 of others. */
+static void impose_boundary_conditions(dense_equations *d, const ric_chain *chain, const ric_pattern *pattern) {
   size_t n = d->n;
   for (size_t i = 0; i < n; i++) {
     ric_role role = ric_pattern_role(pattern, i);
@@ -178,23 +179,23 @@ static ric_status solve_matrix(dense_equations *d, const ric_chain *chain, const
   linear_factor factor;
   double residual;
   size_t size = 2 * d->n;
-  impose(d, chain, pattern);
+  impose_boundary_conditions(d, chain, pattern);
   RIC_TRY(linear_solve(d->system->data, size, d->rhs->data, d->x->data, &work, &factor, error));
   *solution = (linear_outcome){.condition = factor.norm * factor.inverse_norm};
   solution->singular = !(solution->condition < options->singular_condition);
   if (!solution->singular)
     return RIC_OK;
-  impose(d, chain, pattern); /* the factorisation has overwritten it */
+  impose_boundary_conditions(d, chain, pattern); /* the factorisation has overwritten it */
   RIC_TRY(linear_least_norm(d->system->data, size, d->rhs->data, d->x->data, factor.norm / options->singular_condition,
                             factor.last, &residual, error));
   solution->solvable = residual <= options->residual_tol;
   return RIC_OK;
 }
 
-/** State of the orbit of a pattern on the whole chain, O(n^3), allocating what it needs.
+/** State of the orbit of a pattern on the whole chain, O(n^3); allocates its workspace.
  *
- *  Beyond options->singular_condition the solution of least norm is taken if it satisfies the equations to
- * residual_tol.
+ *  Beyond options->singular_condition it returns the solution of least norm if that satisfies the equations to
+ *  residual_tol.
  *  @param solution  set; the condition number is that of the matrix of (11)
  *  Source: (M + N exp(A T/2)) x(0) = B, [JAP] (11), with the boundary conditions (8). */
 static ric_status dense_solve(const ric_chain *chain, const ric_pattern *pattern, double period,
@@ -314,7 +315,8 @@ static ric_status place_state(ric_orbit_solver *s, ric_orbit *orbit, boundary_st
 }
 
 /* Cell -> chain, and the impulses from the velocities: they jump from -p/2 to p/2. */
-static void unfold(const unit_cell *cell, const ric_pattern *pattern, const boundary_state *state, ric_orbit *orbit) {
+static void expand_cell(const unit_cell *cell, const ric_pattern *pattern, const boundary_state *state,
+                        ric_orbit *orbit) {
   for (size_t i = 0; i < orbit->particles && state->q != orbit->q; i++) {
     size_t site = unit_cell_site(cell, i);
     orbit->q[i] = state->q[site];
@@ -356,7 +358,7 @@ static ric_status solve_on_cell(ric_orbit_solver *s, const ric_chain *chain, con
   if (!dense && s->impulse.response.near_dropped > 0 && solution.singular)
     return ric_fail(error, RIC_ENUMERIC, "more than %d wave numbers at resonance: condition %.3g", RESPONSE_NEAR,
                     solution.condition);
-  unfold(&s->cell, pattern, &state, orbit);
+  expand_cell(&s->cell, pattern, &state, orbit);
   orbit->energy = ric_chain_energy(chain, orbit->q, orbit->v);
   if (!isfinite(orbit->energy))
     return ric_fail(error, RIC_ENUMERIC, "energy is not finite: the displacements overflow");

@@ -17,8 +17,8 @@ struct ric_orbit_solver {
   void (*destroy_multipliers)(void *workspace);
 };
 
-/** Judges the orbit of a chain whose state, impulses and condition are set and whose outcome is not `singular`:
- * residual, clearance, outcome, reason.
+/** Outcome and reason of the orbit of a chain whose state, impulses and condition are set and whose outcome is not
+ *  `singular`; also sets its residual and clearance.
  *  @param state  on the cell
  *  @param one_of_many  the equations were singular, and this is the smallest of their solutions */
 ric_status chain_verdict(ric_orbit_solver *s, const ric_chain *chain, const ric_pattern *pattern,

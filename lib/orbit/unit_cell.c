@@ -1,4 +1,4 @@
-/* The part of a chain that a pattern repeats. */
+/* The unit cell: the shortest repeating piece of a pattern. */
 #include "unit_cell.h"
 
 #include <stdlib.h>
@@ -34,8 +34,8 @@ static size_t common_divisor(size_t a, size_t b) {
   return a;
 }
 
-/* Smallest c < n after which everything repeats, n if there is none. The cells share the impacts evenly, so their
- * number divides both; few candidates are left to compare. */
+/* Smallest c < n after which roles and floors repeat, n if there is none. All cells have the same number of impacts,
+ * so the number of cells divides both; few candidates remain. */
 static size_t period_of(const ric_chain *chain, const ric_pattern *pattern) {
   const unsigned char *roles = pattern_roles(pattern);
   size_t n = chain->particles, m = ric_pattern_impacts(pattern);
@@ -68,7 +68,7 @@ static size_t classes_of(const ric_chain *chain, const unsigned char *roles, siz
   return sites;
 }
 
-/* Number of classes when the particles do not feel one another and a class stands for several of them, else 0. */
+/* Number of classes when the particles are not coupled and a class stands for several of them, else 0. */
 static size_t classes_when_decoupled(const ric_chain *chain, const unsigned char *roles, size_t site_of_role[3],
                                      ric_role role_of_site[3]) {
   if (chain->gamma != 0 || chain->floors)

@@ -1,4 +1,4 @@
-/* The part of a chain that a pattern repeats. Internal to the library. */
+/* The unit cell: the shortest repeating piece of a pattern. Internal to the library. */
 #ifndef RICOCHET_UNIT_CELL_H
 #define RICOCHET_UNIT_CELL_H
 
@@ -13,11 +13,11 @@
 /** Roles [particles], values of ric_role. */
 const unsigned char *pattern_roles(const ric_pattern *pattern);
 
-/* The smallest chain that moves like the whole one.
+/* The smallest chain with the same motion as the whole one.
  *
- * A pattern that repeats every c particles of a ring has an orbit that does, too: it is the orbit of a ring of c. A
- * chain with free ends is half of a ring of 2 n with its mirror image, so it reduces when the mirrored pattern repeats.
- * At gamma = 0 every permutation is a symmetry, and one particle of each role stands for all. */
+ * A pattern that repeats every c particles of a ring has an orbit that repeats with it: the orbit of a ring of c. A
+ * chain with free ends is half of a ring of 2 n with its mirror image, so it reduces when the mirrored pattern
+ * repeats. At gamma = 0 every permutation is a symmetry, and one particle of each role stands for all. */
 
 /** An impact of the cell. */
 typedef struct contact {
@@ -35,7 +35,7 @@ typedef struct unit_cell {
   size_t impacts, capacity;
 } unit_cell;
 
-/** Sets the cell of a chain and a pattern; `cell` was zeroed once and keeps its memory from call to call. */
+/** Sets the cell of a chain and a pattern; `cell` was zeroed once, and calls reuse its memory. */
 ric_status unit_cell_find(unit_cell *cell, const ric_chain *chain, const ric_pattern *pattern, ric_error *error);
 
 /** The same without any reduction: the cell is the chain. */
@@ -45,7 +45,7 @@ void unit_cell_clear(unit_cell *cell);
 /** Number of sites of the cell, without setting it up; for estimates of memory. */
 size_t unit_cell_sites(const ric_chain *chain, const ric_pattern *pattern);
 
-/** Site of the cell that moves like a particle. */
+/** Site of the cell with the motion of a particle. */
 static inline size_t unit_cell_site(const unit_cell *cell, size_t particle) {
   return cell->by_role ? cell->site_of_role[cell->roles[particle]] : particle % cell->chain.particles;
 }
@@ -53,7 +53,7 @@ static inline size_t unit_cell_site(const unit_cell *cell, size_t particle) {
 /** Role of a site. */
 ric_role unit_cell_role(const unit_cell *cell, size_t site);
 
-/** First particle that moves like a site. */
+/** First particle with the motion of a site. */
 size_t unit_cell_particle(const unit_cell *cell, size_t site);
 
 #endif

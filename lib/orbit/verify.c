@@ -1,4 +1,4 @@
-/* The verifier: event-driven runs against the impacts of an orbit; and its use for chains. */
+/* The verifier: compares event-driven runs with the impacts of an orbit; and its application to chains. */
 #include <math.h>
 #include <stdbool.h>
 #include <stdint.h>
@@ -22,24 +22,24 @@ ric_verify_options ric_verify_options_default(void) {
   return (ric_verify_options){.closure_tol = 1e-8, .impact_time_tol = 1e-7, .motion = ric_trajectory_options_default()};
 }
 
-/* A predicted impact, and whether it has happened. */
+/* A predicted impact, and whether the run had it. */
 typedef struct predicted {
   double time;
   size_t obstacle;
-  bool happened;
+  bool matched;
 } predicted;
 
-/* The impacts of an orbit, in order of obstacle and time. */
-typedef struct ledger {
+/* The predicted impacts of an orbit, in order of obstacle and time. */
+typedef struct predictions {
   const ric_system *system;
   predicted *impacts;
   size_t count;
   double time_tol;
   ric_verification *verification;
-} ledger;
+} predictions;
 
-/* The first finding stays. */
-static bool is_first(ric_verification *v, ric_verification_result result) {
+/* Sets a result unless there is one already, since the first deviation counts. Returns whether it did. */
+static bool set_result(ric_verification *v, ric_verification_result result) {
   if (v->result != RIC_VERIFIED)
     return false;
   v->result = result;
@@ -53,7 +53,7 @@ static int by_obstacle_and_time(const void *a, const void *b) {
   return x->time < y->time ? -1 : x->time > y->time;
 }
 
-static size_t first_of_obstacle(const ledger *l, size_t obstacle) {
+static size_t first_of_obstacle(const predictions *l, size_t obstacle) {
   size_t low = 0, high = l->count;
   while (low < high) {
     size_t middle = low + (high - low) / 2;
@@ -66,26 +66,26 @@ static size_t first_of_obstacle(const ledger *l, size_t obstacle) {
 }
 
 /* Every jump of the speeds must be predicted. */
-static int see_event(const ric_event *event, void *user) {
-  ledger *l = user;
+static int match_event(const ric_event *event, void *user) {
+  predictions *l = user;
   bool jumps = ric_event_jumps(event), found = false;
   l->verification->impacts += jumps;
   for (size_t i = first_of_obstacle(l, event->obstacle);
        i < l->count && l->impacts[i].obstacle == event->obstacle && !found; i++) {
     predicted *p = &l->impacts[i];
-    found = !p->happened && fabs(event->time - p->time) <= l->time_tol;
-    p->happened = p->happened || found;
+    found = !p->matched && fabs(event->time - p->time) <= l->time_tol;
+    p->matched = p->matched || found;
   }
   ric_verification *v = l->verification;
-  if (jumps && !found && is_first(v, RIC_IMPACT_EXTRA))
+  if (jumps && !found && set_result(v, RIC_IMPACT_EXTRA))
     snprintf(v->reason, sizeof v->reason, "obstacle %zu is hit at t = %.12g with gap rate %.3g, which is not predicted",
              event->obstacle, event->time, event->gap_rate);
   return 0;
 }
 
 /* @param obstacle_of  obstacle of the system for that of the orbit; NULL: they are the same */
-static ric_status ledger_init(ledger *l, const ric_orbit *orbit, const size_t *obstacle_of, double start,
-                              ric_error *error) {
+static ric_status predictions_init(predictions *l, const ric_orbit *orbit, const size_t *obstacle_of, double start,
+                                   ric_error *error) {
   size_t obstacles = ric_system_obstacles(l->system);
   double period = orbit->period;
   l->impacts = malloc((orbit->impacts + 1) * sizeof *l->impacts);
@@ -117,8 +117,8 @@ static double relative_difference(const double *a, const double *b, size_t count
   return largest > 0 ? difference / largest : difference;
 }
 
-static void give_verdict(const ric_trajectory *tr, const ledger *l, const ric_run *run, const double *q,
-                         const double *u, double closure_tol) {
+static void compare_run(const ric_trajectory *tr, const predictions *l, const ric_run *run, const double *q,
+                        const double *u, double closure_tol) {
   ric_verification *v = l->verification;
   if (run->outcome != RIC_RUN_COMPLETED) {
     v->result = RIC_RUN_FAILED;
@@ -129,10 +129,10 @@ static void give_verdict(const ric_trajectory *tr, const ledger *l, const ric_ru
   v->closure_error = fmax(relative_difference(q, ric_trajectory_q(tr), ric_system_coordinates(s)),
                           relative_difference(u, ric_trajectory_u(tr), ric_system_speeds(s)));
   for (size_t i = 0; i < l->count; i++)
-    if (!l->impacts[i].happened && is_first(v, RIC_IMPACT_MISSING))
+    if (!l->impacts[i].matched && set_result(v, RIC_IMPACT_MISSING))
       snprintf(v->reason, sizeof v->reason, "obstacle %zu is not hit at t = %.12g (within %.1g)",
                l->impacts[i].obstacle, l->impacts[i].time, l->time_tol);
-  if (!(v->closure_error <= closure_tol) && is_first(v, RIC_NOT_CLOSED))
+  if (!(v->closure_error <= closure_tol) && set_result(v, RIC_NOT_CLOSED))
     snprintf(v->reason, sizeof v->reason,
              "after one period the state differs by %.3g of its size, expected at most %.3g", v->closure_error,
              closure_tol);
@@ -151,10 +151,11 @@ static ric_status check_request(const ric_system *system, const ric_orbit *orbit
   return RIC_OK;
 }
 
-/* A run that cannot begin, or go on, says something of the orbit; without memory, or stopped, it does not. */
+/* A run that cannot start or continue is a result about the orbit; lack of memory, or a stop by the poll callback,
+ * is none. */
 static ric_status run_period(ric_trajectory *tr, const ric_orbit *orbit, double start, const double *q, const double *u,
-                             ledger *l, double closure_tol, ric_error *error) {
-  ric_observer observer = {.event = see_event, .user = l};
+                             predictions *l, double closure_tol, ric_error *error) {
+  ric_observer observer = {.event = match_event, .user = l};
   ric_error own, *e = error ? error : &own;
   ric_run run;
   ric_status status = ric_trajectory_start(tr, start, q, u, e);
@@ -163,7 +164,7 @@ static ric_status run_period(ric_trajectory *tr, const ric_orbit *orbit, double 
   if (status == RIC_ENOMEM || status == RIC_ESTOPPED)
     return status;
   if (status == RIC_OK) {
-    give_verdict(tr, l, &run, q, u, closure_tol);
+    compare_run(tr, l, &run, q, u, closure_tol);
   } else {
     l->verification->result = RIC_RUN_FAILED;
     snprintf(l->verification->reason, sizeof l->verification->reason, "%s", e->message);
@@ -178,8 +179,8 @@ static ric_status verify(const ric_system *system, const ric_orbit *orbit, const
   ric_trajectory *tr = NULL;
   *verification = (ric_verification){.result = RIC_VERIFIED, .closure_error = NAN};
   RIC_TRY(check_request(system, orbit, &o, error));
-  ledger l = {.system = system, .time_tol = o.impact_time_tol * orbit->period, .verification = verification};
-  ric_status status = ledger_init(&l, orbit, obstacle_of, start, error);
+  predictions l = {.system = system, .time_tol = o.impact_time_tol * orbit->period, .verification = verification};
+  ric_status status = predictions_init(&l, orbit, obstacle_of, start, error);
   if (status == RIC_OK)
     status = ric_trajectory_create(system, &o.motion, &tr, error);
   if (status == RIC_OK)
