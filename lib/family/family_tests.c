@@ -47,7 +47,7 @@ ric_status family_complete(ric_family *f, const double *z, ric_error *error) {
     return RIC_OK;
   if (f->complete || !is_evaluated(f, z, f->options.curve.newton_tol))
     RIC_TRY(family_evaluate(f, z, NULL, NULL, NULL, error));
-  RIC_TRY(shooting_judge(f->shooting, z, f->given, &f->orbit, error));
+  RIC_TRY(shooting_verdict(f->shooting, z, f->given, &f->orbit, error));
   if (f->options.multipliers)
     RIC_TRY(shooting_multipliers(f->shooting, &f->options.judge, &f->multipliers, error));
   record_evaluated(f, z);

@@ -1,4 +1,4 @@
-/* Arcs of a motion between impacts: where their unknowns stand, and how one is run. */
+/* Arcs of a motion between impacts: indices of their unknowns, and the integration of one. */
 #include "arcs.h"
 
 #include <math.h>
@@ -49,9 +49,9 @@ static ric_status check_problem(const ric_system *s, const ric_shooting_problem 
   return check_sequence(s, p, error);
 }
 
-/* Which obstacle each coordinate hits at an end of the half period. */
-static ric_status take_turning(const ric_system *s, const char *where, const size_t *obstacles, size_t count,
-                               size_t *of_coordinate, ric_error *error) {
+/* Sets the obstacle that each coordinate hits at an end of the half period. */
+static ric_status set_hits(const ric_system *s, const char *where, const size_t *obstacles, size_t count,
+                           size_t *of_coordinate, ric_error *error) {
   for (size_t i = 0; i < s->coordinates; i++)
     of_coordinate[i] = NO_UNKNOWN;
   for (size_t k = 0; k < count; k++) {
@@ -83,7 +83,7 @@ size_t arcs_first_numbers(const arc_plan *a) {
   return a->kind == RIC_MOTION_EVEN ? a->coordinates : a->size;
 }
 
-/* Unknowns behind the states: times, the period, lambda. */
+/* Indices of the unknowns after the states: times, the period, lambda. */
 static void place_unknowns(arc_plan *a) {
   bool even = a->kind == RIC_MOTION_EVEN, fixed_origin = !even && a->kind != RIC_MOTION_FORCED;
   size_t next = arcs_first_numbers(a) + (a->count - 1) * a->size;
@@ -164,8 +164,8 @@ ric_status arcs_init(arc_plan *a, const ric_system *system, const ric_shooting_p
   a->count = arc_count * cuts;
   a->arc_count = arc_count;
   if (even) {
-    RIC_TRY(take_turning(system, "at_start", problem->at_start, problem->start_count, a->at_start, error));
-    RIC_TRY(take_turning(system, "at_half", problem->at_half, problem->half_count, a->at_half, error));
+    RIC_TRY(set_hits(system, "at_start", problem->at_start, problem->start_count, a->at_start, error));
+    RIC_TRY(set_hits(system, "at_half", problem->at_half, problem->half_count, a->at_half, error));
   }
   place_unknowns(a);
   lay_out_plan(a, arc_count, cuts);
@@ -222,7 +222,7 @@ ric_flow *arc_runner_flow(const arc_runner *r) {
   return r->flow ? r->flow : r->trajectory->flow;
 }
 
-static void keep_state(const arc_runner *r, const ric_flow *flow, double *x, size_t columns, double *d) {
+static void copy_state(const arc_runner *r, const ric_flow *flow, double *x, size_t columns, double *d) {
   size_t n = r->system->coordinates, m = r->system->speeds;
   memcpy(x, flow->q, n * sizeof *x);
   if (m > 0)
@@ -248,8 +248,8 @@ static ric_status check_steps(const arc_runner *r, ric_error *error) {
   return ric_fail(error, RIC_ENUMERIC, "the motion takes too many steps; given up at t = %g", ric_flow_time(flow));
 }
 
-static ric_status flow_along(arc_runner *r, double from, double to, double *x, size_t columns, double *d,
-                             const arc_watch *watcher, ric_error *error) {
+static ric_status run_flow(arc_runner *r, double from, double to, double *x, size_t columns, double *d,
+                           const arc_watch *watcher, ric_error *error) {
   size_t n = r->system->coordinates;
   RIC_TRY(ric_flow_start(r->flow, from, x, x + n, error));
   if (columns > 0)
@@ -262,12 +262,12 @@ static ric_status flow_along(arc_runner *r, double from, double to, double *x, s
     report_segments(r->flow, watcher);
     ric_flow_accept(r->flow, 1);
   }
-  keep_state(r, r->flow, x, columns, d);
+  copy_state(r, r->flow, x, columns, d);
   return RIC_OK;
 }
 
-static ric_status run_along(arc_runner *r, double from, double to, double *x, size_t columns, double *d,
-                            const arc_watch *watcher, ric_error *error) {
+static ric_status run_trajectory(arc_runner *r, double from, double to, double *x, size_t columns, double *d,
+                                 const arc_watch *watcher, ric_error *error) {
   size_t n = r->system->coordinates;
   ric_observer observer = {.segment = watcher ? watcher->segment : NULL, .user = watcher ? watcher->user : NULL};
   ric_run run;
@@ -279,14 +279,14 @@ static ric_status run_along(arc_runner *r, double from, double to, double *x, si
   RIC_TRY(ric_trajectory_run(r->trajectory, to, &observer, &run, error));
   if (run.outcome != RIC_RUN_COMPLETED)
     return ric_fail(error, RIC_ENUMERIC, "%s at t = %g: %s", ric_run_outcome_name(run.outcome), run.time, run.reason);
-  keep_state(r, r->trajectory->flow, x, columns, d);
+  copy_state(r, r->trajectory->flow, x, columns, d);
   return RIC_OK;
 }
 
 ric_status arc_runner_move(arc_runner *r, double from, double to, double *x, size_t columns, double *d,
                            const arc_watch *watcher, ric_error *error) {
   if (!(from < INFINITY && from > -INFINITY && to < INFINITY && to > -INFINITY))
-    return ric_fail(error, RIC_ENUMERIC, "an arc from t = %g to %g", from, to);
-  return r->flow ? flow_along(r, from, to, x, columns, d, watcher, error)
-                 : run_along(r, from, to, x, columns, d, watcher, error);
+    return ric_fail(error, RIC_ENUMERIC, "an arc from t = %g to %g, expected finite times", from, to);
+  return r->flow ? run_flow(r, from, to, x, columns, d, watcher, error)
+                 : run_trajectory(r, from, to, x, columns, d, watcher, error);
 }

@@ -1,4 +1,5 @@
-/* Ritz's method: functions, the solution with one number of them and with more and more, the motion that results. */
+/* Ritz's method: trial functions, the solution with a given number of them and with increasing numbers, the motion
+ * that results. */
 #include "ritz.h"
 
 #include <math.h>
@@ -15,7 +16,7 @@
 #include "numeric/number_block.h"
 #include "ricochet/ritz.h"
 
-/* The approximated motion at any time, and what it leaves of the equations of motion. */
+/* The approximated motion at any time, and its residual in the equations of motion. */
 
 /* Samples per function over half a period: 16 per wave of the fastest one. */
 enum { SAMPLES = 16 };
@@ -71,13 +72,13 @@ double ric_ritz_defect(ric_ritz *r, const double *c, double period) {
   return left > 0 ? left / most : 0; /* rest is exact */
 }
 
-/* Solving F(c) = 0, with one number of functions and with more and more. */
+/* Solving F(c) = 0, with a given number of functions and with increasing numbers. */
 
 /* Of the largest residual, relative to 1 + the largest unknown, without units: rounding of sums over the points. */
 static const double newton_tol = 1e-13;
 
-/* Newton's method sees no units of length and time, so that its tolerance means the same in all: coefficients are
- * over the size of the motion, w is over 2 pi / T, residuals of the equations of motion are over both. */
+/* Newton's method works on numbers without units of length and time, so that its tolerance has one meaning:
+ * coefficients are divided by the size of the motion, w by 2 pi / T, residuals of the equations of motion by both. */
 typedef struct at_period {
   ric_ritz *r;
   double period;
@@ -94,22 +95,22 @@ static at_period units_of(ric_ritz *r, const double *c, double period) {
   return (at_period){.r = r, .period = period, .length = size > 0 ? size : 1, .rate = two_pi / period};
 }
 
-static void take_units_off(const at_period *a, const double *c, double *z) {
+static void remove_units(const at_period *a, const double *c, double *z) {
   size_t last = ric_ritz_unknowns(a->r) - 1;
   for (size_t i = 0; i < last; i++)
     z[i] = c[i] / a->length;
   z[last] = c[last] / a->rate;
 }
 
-static void put_units_on(const at_period *a, const double *z, double *c) {
+static void restore_units(const at_period *a, const double *z, double *c) {
   size_t last = ric_ritz_unknowns(a->r) - 1;
   for (size_t i = 0; i < last; i++)
     c[i] = z[i] * a->length;
   c[last] = z[last] * a->rate;
 }
 
-/* Of the Jacobian: what row i is over, and column j is times. */
-static void scale_slopes(const at_period *a, double *J) {
+/* Scales the Jacobian: row i is divided by the unit of its equation, column j multiplied by that of its unknown. */
+static void scale_jacobian(const at_period *a, double *J) {
   size_t unknowns = ric_ritz_unknowns(a->r), last = unknowns - 1;
   for (size_t i = 0; i < unknowns; i++) {
     double *row = J + i * unknowns;
@@ -122,12 +123,12 @@ static void scale_slopes(const at_period *a, double *J) {
 static ric_status ritz_residual(const double *z, double *F, double *J, void *user, ric_error *error) {
   const at_period *a = user;
   size_t last = ric_ritz_unknowns(a->r) - 1;
-  put_units_on(a, z, a->r->spare);
+  restore_units(a, z, a->r->spare);
   RIC_TRY(ric_ritz_residual(a->r, a->r->spare, a->period, F, J, NULL, error));
   for (size_t i = 0; i <= last; i++)
     F[i] = i < last ? F[i] / a->length / a->rate / a->rate : F[i] / a->length;
   if (J)
-    scale_slopes(a, J);
+    scale_jacobian(a, J);
   return RIC_OK;
 }
 
@@ -172,9 +173,9 @@ ric_status ric_ritz_solve(ric_ritz *r, double *c, double period, int *iterations
   at_period at = units_of(r, c, period);
   const newton_problem problem = {
       .name = "Ritz's method", .unknowns = ric_ritz_unknowns(r), .residual = ritz_residual, .user = &at};
-  take_units_off(&at, c, c);
+  remove_units(&at, c, c);
   ric_status status = newton_solve(&problem, c, newton_tol, &count, error);
-  put_units_on(&at, c, c);
+  restore_units(&at, c, c);
   double w = ritz_frequency(r, c);
   if (iterations)
     *iterations = count;
@@ -184,7 +185,7 @@ ric_status ric_ritz_solve(ric_ritz *r, double *c, double period, int *iterations
                   two_pi / period);
 }
 
-/* --- more and more functions -------------------------------------------------------------------------------------- */
+/* --- increasing numbers of functions ------------------------------------------------------------------------------ */
 
 typedef struct ladder {
   ric_ritz *r;
@@ -210,7 +211,7 @@ static bool is_fatal(ric_status status) {
   return status != RIC_OK && status != RIC_ENUMERIC;
 }
 
-/* Solves from l->tried, and keeps the solution when it is better than the best. */
+/* Solves from l->tried, and keeps the solution if its error is the smallest. */
 static ric_status try_guess(ladder *l, bool *better, ric_error *error) {
   double off;
   *better = false;
@@ -244,8 +245,8 @@ ric_status ric_ritz_use(ric_ritz *r, size_t functions, double *c, ric_error *err
   return RIC_OK;
 }
 
-/* From the best solution so far; where that leads nowhere, from a fit with the best of tried frequencies. */
-static ric_status climb(ladder *l, size_t functions, ric_error *error) {
+/* First from the best solution so far; if that fails, from a fit with the best of several frequencies. */
+static ric_status solve_rung(ladder *l, size_t functions, ric_error *error) {
   bool better = false;
   if (l->functions > 0) {
     RIC_TRY(ric_ritz_use(l->r, l->functions, NULL, error));
@@ -269,9 +270,9 @@ static ric_status check_convergence(const ladder *l, double tolerance, ric_error
                   l->error_q, l->functions, tolerance);
 }
 
-static ric_status climb_all(ladder *l, double tolerance, double *c, ric_error *error) {
+static ric_status solve_rungs(ladder *l, double tolerance, double *c, ric_error *error) {
   for (size_t k = 1; k <= l->r->most && !(l->functions > 0 && l->error_q <= tolerance); k = next_rung(k, l->r->most))
-    RIC_TRY(climb(l, k, error));
+    RIC_TRY(solve_rung(l, k, error));
   RIC_TRY(ric_ritz_use(l->r, l->functions > 0 ? l->functions : l->r->most, NULL, error));
   if (l->functions > 0)
     memcpy(c, l->best, ric_ritz_unknowns(l->r) * sizeof *c);
@@ -288,7 +289,7 @@ ric_status ric_ritz_refine(ric_ritz *r, ric_shooting *shooting, const double *z,
   if (!l.best)
     return ric_fail(error, RIC_ENOMEM, "no memory for %zu coefficients", unknowns);
   l.tried = l.best + unknowns;
-  ric_status status = climb_all(&l, tolerance, c, error);
+  ric_status status = solve_rungs(&l, tolerance, c, error);
   free(l.best);
   if (error_q)
     *error_q = l.error_q;
@@ -304,7 +305,7 @@ ric_ritz_options ric_ritz_options_default(void) {
   return (ric_ritz_options){.functions = 16, .constants = true};
 }
 
-/* --- what is refused ---------------------------------------------------------------------------------------------- */
+/* --- checks ------------------------------------------------------------------------------------------------------- */
 
 static ric_status check_options(const ric_ritz_options *o, ric_error *error) {
   if (!(o->functions >= 1 && o->functions <= RIC_RITZ_MOST))
@@ -315,7 +316,7 @@ static ric_status check_options(const ric_ritz_options *o, ric_error *error) {
   return RIC_OK;
 }
 
-/* What no change of numbers changes. */
+/* Properties of the system that a change of its numbers does not change. */
 static ric_status check_obstacle(const ric_system *s, size_t obstacle, ric_error *error) {
   if (s->taylor != SYSTEM_LATTICE)
     return ric_fail(error, RIC_EINVAL, "Ritz's method needs a lattice");

@@ -28,7 +28,7 @@ struct ric_ritz {
   double *unit;         /* [n][n] */
   double *nothing;      /* [n][n] zeros */
   double *spare;        /* [unknowns at most] */
-  double *block;        /* behind all of them */
+  double *block;        /* owns all of them */
 };
 
 /** N' */
@@ -45,7 +45,7 @@ static inline double ritz_frequency(const ric_ritz *r, const double *c) {
   return c[r->coordinates * ritz_width(r)];
 }
 
-/** @returns RIC_EINVAL unless the system's numbers are those of a lattice as the equations have it. */
+/** @returns RIC_EINVAL unless the system's numbers are those of a lattice that the equations allow. */
 ric_status ritz_check_system(ric_ritz *r, ric_error *error);
 
 /** @returns RIC_ENUMERIC unless c are numbers and the period is positive. */

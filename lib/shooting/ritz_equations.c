@@ -22,7 +22,7 @@ typedef struct node {
   double weight, lever; /* lever: T/2 - t over the period */
 } node;
 
-/* How q_k and its second derivative move with w and with T. */
+/* Derivatives of q_k and of its second derivative by w and by T. */
 typedef struct hit_slopes {
   double q_w, q_period, bend_w, bend_period;
 } hit_slopes;
@@ -36,8 +36,8 @@ ric_status ritz_check_numbers(const ric_ritz *r, const double *c, double period,
   return ric_fail(error, RIC_ENUMERIC, "period = %g, expected > 0", period);
 }
 
-/* Sets r->q, r->bend, r->rate, and cosines and sines, at a point. */
-static void move_to(const equations *e, const node *at) {
+/* Sets r->q, r->bend, r->rate, and cosines and sines, at a point of the quadrature. */
+static void evaluate_node(const equations *e, const node *at) {
   ric_ritz *r = e->r;
   ritz_functions_at(r, e->w * e->period * at->lever, r->cosine, r->sine);
   for (size_t j = 0; j < r->coordinates; j++) {
@@ -61,7 +61,7 @@ static void project(const equations *e, const node *at) {
   }
 }
 
-/* J's part of the equations of coordinate j and the coefficients of coordinate k. */
+/* Entries of J: equations of coordinate j by the coefficients of coordinate k. */
 static void project_block(const equations *e, const node *at, size_t j, size_t k) {
   const ric_ritz *r = e->r;
   const double *f = k == r->hit ? r->cosine : at->psi;
@@ -121,8 +121,8 @@ static void project_derivatives(const equations *e, const node *at) {
   project_slopes(e, at);
 }
 
-/* q_k(0) = b */
-static void touch(const equations *e) {
+/* The equation q_k(0) = b. */
+static void contact_equation(const equations *e) {
   ric_ritz *r = e->r;
   const double *a = e->c + r->hit * e->width;
   size_t last = e->unknowns - 1;
@@ -161,11 +161,11 @@ ric_status ric_ritz_residual(ric_ritz *r, const double *c, double period, double
     memset(F_period, 0, e.unknowns * sizeof *F_period);
   for (size_t p = 0; p < r->points; p++) {
     const node at = {.psi = r->psi + p * r->stride, .weight = r->weight[p], .lever = 0.5 - r->tau[p]};
-    move_to(&e, &at);
+    evaluate_node(&e, &at);
     project(&e, &at);
     if (J)
       project_derivatives(&e, &at);
   }
-  touch(&e);
+  contact_equation(&e);
   return RIC_OK;
 }

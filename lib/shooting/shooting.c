@@ -1,4 +1,4 @@
-/* Shooting: its options and workspace, the solution from afar, and states of a motion. */
+/* Shooting: its options and workspace, the solution by Newton's method, and states of a motion. */
 #include "shooting.h"
 
 #include <math.h>
@@ -15,17 +15,18 @@
 
 /* States of a motion at times of its period. */
 
-/* Times this near to the end of a segment, over the period, belong to it: before an impact there. */
+/* Times nearer than this to the end of a segment, over the period, belong to that segment: to the state before an
+ * impact. */
 static const double end_tol = 1e-12;
 
 typedef struct sampling {
   const ric_shooting *s;
   double first, step, slack; /* times */
-  size_t count;              /* of those that are run along: half of an even motion */
+  size_t count;              /* of those that are integrated: half of an even motion */
   double *q, *v;             /* [all][n], [all][m] */
 } sampling;
 
-static ric_status begins(const piece_run *run, void *user, ric_error *error) {
+static ric_status copy_first_state(const piece_run *run, void *user, ric_error *error) {
   sampling *p = user;
   size_t n = p->s->arcs.coordinates;
   (void)error;
@@ -38,13 +39,13 @@ static ric_status begins(const piece_run *run, void *user, ric_error *error) {
   return RIC_OK;
 }
 
-/* The first time after one; rounding beside it does not count. */
+/* The index of the first sample after a time; samples within rounding of it count as not after it. */
 static size_t first_after(const sampling *p, double time) {
   double k = floor((time + p->slack - p->first) / p->step) + 1;
   return k < 1 ? 1 : k < (double)p->count ? (size_t)k : p->count;
 }
 
-static void segment(const ric_segment *piece, double end, void *user) {
+static void sample_segment(const ric_segment *piece, double end, void *user) {
   sampling *p = user;
   size_t n = p->s->arcs.coordinates, m = p->s->arcs.speeds;
   size_t last = first_after(p, piece->start + end * piece->length);
@@ -55,7 +56,7 @@ static void segment(const ric_segment *piece, double end, void *user) {
   }
 }
 
-/* The second half of an even motion is the first one backwards. */
+/* The second half of an even motion is the first one reversed. */
 static void mirror(const sampling *p, size_t count) {
   size_t n = p->s->arcs.coordinates;
   for (size_t k = p->count; k < count; k++)
@@ -65,9 +66,9 @@ static void mirror(const sampling *p, size_t count) {
     }
 }
 
-/* States at the first time of the motion and every `step` after it, as far as it is run along. */
+/* States at the first time of the motion and every `step` after it, in the part that is integrated. */
 static ric_status sample(ric_shooting *s, const double *z, double given, sampling *p, size_t count, ric_error *error) {
-  const shooting_observer observer = {.begins = begins, .segment = segment, .user = p};
+  const shooting_observer observer = {.begins = copy_first_state, .segment = sample_segment, .user = p};
   for (size_t k = 0; k < count * s->arcs.coordinates; k++)
     p->q[k] = NAN;
   for (size_t k = 0; k < count * s->arcs.speeds; k++)
@@ -80,8 +81,7 @@ ric_status ric_shooting_states(ric_shooting *s, const double *z, double given, s
   bool even = s->arcs.kind == RIC_MOTION_EVEN;
   double period;
   if (count < 2 || count > SIZE_MAX / 64 / s->arcs.size)
-    return ric_fail(error, RIC_EINVAL, "count = %zu, expected at least 2 states, and fewer than memory has room for",
-                    count);
+    return ric_fail(error, RIC_EINVAL, "count = %zu, expected at least 2 states, and no more than memory holds", count);
   RIC_TRY(shooting_period(s, z, given, &period, error));
   sampling p = {.s = s,
                 .step = period / (double)(count - 1),
@@ -95,10 +95,10 @@ ric_status ric_shooting_states(ric_shooting *s, const double *z, double given, s
   return RIC_OK;
 }
 
-/* The verifier, from within the longest time between impacts on. */
+/* Verification, from a start within the longest time between impacts. */
 
-/* Part of that time: not its middle, where symmetric motions stop. */
-static const double part_of_longest = 0.25;
+/* Position of the start within that time: not its middle, a turning point of symmetric motions. */
+static const double start_part = 0.25;
 
 /* Time from `from` to the next impact, 0 < it <= T. */
 static double until_impact(const ric_orbit *o, double from) {
@@ -119,7 +119,7 @@ static double time_between_impacts(const ric_orbit *o) {
       after = o->impact_time[k];
     }
   }
-  return after + part_of_longest * longest;
+  return after + start_part * longest;
 }
 
 /* @param states  [2][n + m] q at both times, v at both */
@@ -129,7 +129,7 @@ static ric_status verify(ric_shooting *s, const double *z, double given, const r
   double period = orbit->period, first = shooting_begin(s, 0, z, period, WISH_STATE).begin;
   double late = fmod(time_between_impacts(orbit) - first, period);
   late += late < 0 ? period : 0;
-  if (shooting_is_even(s)) /* the second half is the first one backwards: nor are there impacts */
+  if (shooting_is_even(s)) /* the second half is the first one reversed: it has no impact there either */
     late = fmin(late, period - late);
   sampling p = {.s = s, .step = late, .slack = end_tol * period, .count = 2, .q = states, .v = states + 2 * n};
   RIC_TRY(sample(s, z, given, &p, 2, error));
@@ -150,15 +150,16 @@ ric_status ric_shooting_verify(ric_shooting *s, const double *z, double given, c
   return status;
 }
 
-/* Solving F(z) = 0 from afar. */
+/* Solving F(z) = 0 from a guess. */
 
 static const double default_tolerance = 1e-13;
 
-/* Ends of a conservative motion that are farther apart, relative to 1 + the largest unknown, are not one state. */
+/* If the ends of a conservative motion differ by more than this, relative to 1 + the largest unknown, it is not
+ * closed. */
 static const double lambda_tol = 1e-6;
 
-/* Motions that take so many times the steps of the guess, and some, lead nowhere: Newton's method tries states of any
- * size, and fast ones would take for ever. */
+/* Newton's method tries states of any size, and fast motions need very many steps: a motion is given up that takes
+ * STEPS_GROW times the steps of the guess, plus STEPS_MORE. */
 enum { STEPS_GROW = 50, STEPS_MORE = 1000 };
 
 typedef struct search {
@@ -181,14 +182,16 @@ static ric_status shooting_residual(const double *z, double *F, double *J, void 
   return status;
 }
 
-/* E(x - lambda grad E) = E(x) has other solutions than lambda = 0: they close nothing. */
+/* E(x - lambda grad E) = E(x) has other solutions than lambda = 0: those motions are not closed. */
 static ric_status check_lambda(const ric_shooting *s, const double *z, ric_error *error) {
   size_t index = s->arcs.lambda;
   double added = index == NO_UNKNOWN ? 0 : fabs(z[index]) * largest(s->gradient, s->arcs.size);
   if (added <= lambda_tol * (1 + largest(z, s->arcs.unknowns)))
     return RIC_OK;
-  return ric_fail(error, RIC_ENUMERIC,
-                  "shooting converges to no motion: its ends are %.3g apart along the gradient of the energy", added);
+  return ric_fail(
+      error, RIC_ENUMERIC,
+      "shooting converges to a motion that is not closed: its ends differ by %.3g along the gradient of the energy",
+      added);
 }
 
 ric_status ric_shooting_solve(ric_shooting *s, double *z, double given, double tolerance, int *iterations,
@@ -210,7 +213,7 @@ ric_status ric_shooting_solve(ric_shooting *s, double *z, double given, double t
 
 static const double default_grazing_tol = 1e-10;
 
-/* Step of differences of the energy, whose scales are taken to be one: errors of 1e-12. */
+/* Step of differences of the energy, for scales of order one: errors of 1e-12. */
 static const double energy_step = 1e-3;
 
 static ric_status check_system(const ric_system *s, const ric_shooting_problem *p, ric_error *error) {
@@ -221,7 +224,8 @@ static ric_status check_system(const ric_system *s, const ric_shooting_problem *
   bool conserves = p->kind == RIC_MOTION_EVEN || p->kind == RIC_MOTION_CONSERVATIVE;
   for (size_t j = 0; conserves && s->obstacles && j < s->obstacle_count; j++)
     if (s->obstacles[j].stiffness == INFINITY && s->obstacles[j].restitution != 1)
-      return ric_fail(error, RIC_EINVAL, "restitution = %g of obstacle %zu, expected 1: impacts may not take energy",
+      return ric_fail(error, RIC_EINVAL,
+                      "restitution = %g of obstacle %zu, expected 1: impacts must conserve the energy",
                       s->obstacles[j].restitution, j);
   return RIC_OK;
 }
@@ -235,10 +239,10 @@ static ric_status allocate_shooting(ric_shooting *s, ric_error *error) {
   if (!s->block)
     return ric_fail(error, RIC_ENOMEM, "no memory for the tangent vectors of %zu numbers", size);
   double *store = s->block;
-  s->carried = number_store_take(&store, size * (c + 1));
+  s->vectors = number_store_take(&store, size * (c + 1));
   s->ends = number_store_take(&store, size * (c + 2));
   s->gap_row = number_store_take(&store, c + 2);
-  s->in_time = number_store_take(&store, c + 2);
+  s->time_row = number_store_take(&store, c + 2);
   s->x = number_store_take(&store, size);
   s->rates = number_store_take(&store, size);
   s->gradient = number_store_take(&store, size);
@@ -282,7 +286,7 @@ ric_status ric_shooting_create(ric_system *system, const ric_shooting_problem *p
   s->system = system;
   s->poll = problem->poll;
   s->grazing_tol = problem->grazing_tol > 0 ? problem->grazing_tol : default_grazing_tol;
-  /* Even motions may be forced; it matters where a piece begins at a time that moves. */
+  /* Even motions may be forced: then it matters at which time a piece begins. */
   s->forced = problem->kind == RIC_MOTION_FORCED || problem->kind == RIC_MOTION_EVEN;
   ric_status status = build_shooting(s, problem, error);
   if (status == RIC_OK)
@@ -307,7 +311,7 @@ ric_flow_counts ric_shooting_counted(const ric_shooting *shooting) {
 
 /* --- energy ------------------------------------------------------------------------------------------------------- */
 
-/* States along one coordinate or speed. */
+/* Energy along one coordinate or speed. */
 typedef struct energy_line {
   ric_shooting *s;
   double *x;
@@ -364,7 +368,7 @@ static void guess_numbers(const ric_shooting *s, const double *q, const double *
     z[a->period] = period;
 }
 
-/* The phase condition: no motion along the present rates. */
+/* The phase condition: no change of the state along the rates of the guess. */
 static ric_status set_phase(ric_shooting *s, const double *z, ric_error *error) {
   size_t n = s->arcs.coordinates;
   if (s->arcs.phase_row == NO_UNKNOWN)
@@ -373,7 +377,7 @@ static ric_status set_phase(ric_shooting *s, const double *z, ric_error *error) 
   RIC_TRY(ric_system_rate(s->system, 0, z, z + n, s->phase_along, s->phase_along + n, error));
   double size = largest(s->phase_along, s->arcs.size);
   if (!(size > 0))
-    return ric_fail(error, RIC_EINVAL, "the guess is a state of rest: it has no phase");
+    return ric_fail(error, RIC_EINVAL, "the guess is a state of rest, expected a motion: a state of rest has no phase");
   for (size_t i = 0; i < s->arcs.size; i++)
     s->phase_along[i] /= size;
   return RIC_OK;

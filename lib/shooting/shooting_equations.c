@@ -5,9 +5,9 @@
 
 #include "shooting.h"
 
-/* One piece of a motion: where it begins, where it ends, and how its end depends on what. */
+/* One piece of a motion: its beginning, its end, and the derivatives of its end. */
 
-/* An even motion begins at rest, or on the obstacles that it has hit. */
+/* An even motion begins at rest, or at the obstacles that it has hit. */
 static void even_start(const ric_shooting *s, const double *z, double *x) {
   size_t n = s->arcs.coordinates;
   for (size_t i = 0; i < n; i++) {
@@ -21,9 +21,9 @@ static bool begins_even(const ric_shooting *s, size_t piece) {
   return s->arcs.kind == RIC_MOTION_EVEN && piece == 0;
 }
 
-/* Whether the beginning of the piece is a time that moves, in a system that knows the time: then its derivative is
- * carried along, too. */
-static bool carries_time(const ric_shooting *s, const arc_piece *p) {
+/* Whether the time at which the piece begins is variable, in a system whose forces depend on time: then there is a
+ * tangent vector for that time. */
+static bool has_time_vector(const ric_shooting *s, const arc_piece *p) {
   bool fixed = p->begin.index == NO_UNKNOWN && p->begin.of_period == 0 && p->from == 0;
   return s->forced && !fixed;
 }
@@ -41,8 +41,8 @@ piece_run shooting_begin(ric_shooting *s, size_t piece, const double *z, double 
                      .end = piece_finish(p, z, period),
                      .first_numbers = numbers,
                      .wish = wish,
-                     .carried = whole ? s->spectrum->carried : s->carried,
-                     .columns = (whole ? s->arcs.size : numbers) + (carries_time(s, p) ? 1 : 0)};
+                     .vectors = whole ? s->spectrum->vectors : s->vectors,
+                     .columns = (whole ? s->arcs.size : numbers) + (has_time_vector(s, p) ? 1 : 0)};
 }
 
 static ric_status read_rates(ric_shooting *s, double t, ric_error *error) {
@@ -59,52 +59,52 @@ size_t shooting_column(const ric_shooting *s, const piece_run *run, size_t row) 
   return run->wish == WISH_WHOLE ? run->columns - n + i : NO_UNKNOWN;
 }
 
-/* Tangent vectors to begin with: unit vectors; and minus the rates, for the beginning in time. */
-static ric_status set_carried(ric_shooting *s, const piece_run *run, ric_error *error) {
+/* Initial tangent vectors: unit vectors; and minus the rates, for the time of the beginning. */
+static ric_status set_tangents(ric_shooting *s, const piece_run *run, ric_error *error) {
   size_t size = s->arcs.size, columns = run->columns, c = run->first_numbers;
-  memset(run->carried, 0, size * columns * sizeof *run->carried);
+  memset(run->vectors, 0, size * columns * sizeof *run->vectors);
   for (size_t i = 0; i < size; i++) {
     size_t column = shooting_column(s, run, i);
     if (column != NO_UNKNOWN)
-      run->carried[i * columns + column] = 1;
+      run->vectors[i * columns + column] = 1;
   }
-  if (!carries_time(s, run->piece))
+  if (!has_time_vector(s, run->piece))
     return RIC_OK;
   RIC_TRY(read_rates(s, run->begin, error));
   for (size_t i = 0; i < size; i++)
-    run->carried[i * columns + c] = -s->rates[i];
+    run->vectors[i * columns + c] = -s->rates[i];
   return RIC_OK;
 }
 
-/* From what was carried to derivatives by the first state and by the times of the arc: a piece [from, to] of an arc
- * from a to b begins at a + from (b - a), and ends at a + to (b - a). */
+/* Converts tangent vectors to derivatives by the first state and by the times of the arc: a piece [from, to] of an
+ * arc from a to b begins at a + from (b - a), and ends at a + to (b - a). */
 static void set_ends(ric_shooting *s, const piece_run *run) {
   const arc_piece *p = run->piece;
   size_t c = run->first_numbers;
-  bool timed = carries_time(s, p);
+  bool timed = has_time_vector(s, p);
   for (size_t i = 0; i < s->arcs.size; i++) {
-    const double *carried = run->carried + i * run->columns;
-    double late = s->rates[i], early = timed ? carried[c] : -late, *row = s->ends + i * (c + 2);
-    memcpy(row, carried, c * sizeof *row);
+    const double *vectors = run->vectors + i * run->columns;
+    double late = s->rates[i], early = timed ? vectors[c] : -late, *row = s->ends + i * (c + 2);
+    memcpy(row, vectors, c * sizeof *row);
     row[c] = (1 - p->from) * early + (1 - p->to) * late;
     row[c + 1] = p->from * early + p->to * late;
   }
-  memset(s->in_time, 0, c * sizeof *s->in_time);
-  s->in_time[c] = 1 - p->to;
-  s->in_time[c + 1] = p->to;
+  memset(s->time_row, 0, c * sizeof *s->time_row);
+  s->time_row[c] = 1 - p->to;
+  s->time_row[c + 1] = p->to;
 }
 
 ric_status shooting_move(ric_shooting *s, const piece_run *run, const arc_watch *watcher, ric_error *error) {
   if (run->wish == WISH_STATE)
     return arc_runner_move(&s->runner, run->begin, run->end, s->x, 0, NULL, watcher, error);
-  RIC_TRY(set_carried(s, run, error));
-  RIC_TRY(arc_runner_move(&s->runner, run->begin, run->end, s->x, run->columns, run->carried, watcher, error));
+  RIC_TRY(set_tangents(s, run, error));
+  RIC_TRY(arc_runner_move(&s->runner, run->begin, run->end, s->x, run->columns, run->vectors, watcher, error));
   RIC_TRY(read_rates(s, run->end, error));
   set_ends(s, run);
   return RIC_OK;
 }
 
-/* The gap depends on time by itself, too: what its rate has beyond its derivative along the motion. */
+/* A gap may also depend on time explicitly: its rate less its derivative along the motion. */
 ric_status shooting_gap(ric_shooting *s, const piece_run *run, size_t obstacle, double *gap, ric_error *error) {
   const ric_system *system = s->system;
   size_t n = s->arcs.coordinates, c = run->first_numbers;
@@ -120,7 +120,7 @@ ric_status shooting_gap(ric_shooting *s, const piece_run *run, size_t obstacle, 
   if (trouble)
     return ric_fail(error, RIC_ECALLBACK, "at t = %g, obstacle %zu: %s", run->end, obstacle, trouble);
   for (size_t k = c; run->wish != WISH_STATE && k < c + 2; k++)
-    s->gap_row[k] += (rate - slope) * s->in_time[k];
+    s->gap_row[k] += (rate - slope) * s->time_row[k];
   return RIC_OK;
 }
 
@@ -131,13 +131,13 @@ ric_status shooting_hit(ric_shooting *s, const piece_run *run, ric_error *error)
   tangents ends = shooting_ends(s, run);
   if (run->wish == WISH_STATE)
     ends.columns = 0;
-  return tangent_jump_map(&s->jump, run->end, &group, s->x, s->x + n, &ends, s->in_time, error);
+  return tangent_jump_map(&s->jump, run->end, &group, s->x, s->x + n, &ends, s->time_row, error);
 }
 
 /* F(z) and its derivatives, piece by piece. */
 
-/* Arcs that are longer, in periods, belong to no motion near: Newton's method has lost its way, and running along them
- * would take for ever. */
+/* Newton's method fails with longer arcs, in periods: no motion near the guess has them, and their integration would
+ * take very long. */
 static const double longest_arc = 10;
 
 typedef struct equations {
@@ -156,7 +156,7 @@ static void add(const equations *e, size_t row, size_t unknown, double value) {
   e->J[row * e->s->arcs.unknowns + unknown] += value;
 }
 
-/* Derivative by the period, which is an unknown or the given number. */
+/* Derivative by the period: an unknown or the given number. */
 static void add_by_period(const equations *e, size_t row, double value) {
   const arc_plan *a = &e->s->arcs;
   if (a->period != NO_UNKNOWN)
@@ -182,8 +182,8 @@ static void add_row(const equations *e, const piece_run *run, size_t row, const 
   add_by_event(e, row, run->piece->end, values[c + 1]);
 }
 
-/* The end of a piece is the beginning of the next one. */
-static void match(const equations *e, const piece_run *run, size_t row) {
+/* Continuity: the end of a piece is the first state of the next one. */
+static void continuity_equations(const equations *e, const piece_run *run, size_t row) {
   ric_shooting *s = e->s;
   const arc_piece *next = run->piece->closes ? s->arcs.pieces : run->piece + 1;
   for (size_t i = 0; i < s->arcs.size; i++) {
@@ -202,20 +202,21 @@ static void match(const equations *e, const piece_run *run, size_t row) {
   }
 }
 
-static ric_status touch(const equations *e, const piece_run *run, size_t obstacle, size_t row, ric_error *error) {
+static ric_status contact_equation(const equations *e, const piece_run *run, size_t obstacle, size_t row,
+                                   ric_error *error) {
   RIC_TRY(shooting_gap(e->s, run, obstacle, &e->F[row], error));
   if (wants_derivatives(e))
     add_row(e, run, row, e->s->gap_row);
   return RIC_OK;
 }
 
-/* At half the period coordinates are at rest, or hit. */
-static ric_status turn(const equations *e, const piece_run *run, ric_error *error) {
+/* At half the period each coordinate is at rest, or at the obstacle that it hits. */
+static ric_status half_period_equations(const equations *e, const piece_run *run, ric_error *error) {
   const arc_plan *a = &e->s->arcs;
   for (size_t i = 0; i < a->coordinates; i++) {
     size_t row = run->piece->row + i, speed = a->coordinates + i;
     if (a->at_half[i] != NO_UNKNOWN) {
-      RIC_TRY(touch(e, run, a->at_half[i], row, error));
+      RIC_TRY(contact_equation(e, run, a->at_half[i], row, error));
       continue;
     }
     e->F[row] = e->s->x[speed];
@@ -228,17 +229,17 @@ static ric_status turn(const equations *e, const piece_run *run, ric_error *erro
 static ric_status end_piece(const equations *e, const piece_run *run, ric_error *error) {
   const arc_piece *p = run->piece;
   if (p->how == PIECE_HALF)
-    return turn(e, run, error);
+    return half_period_equations(e, run, error);
   if (p->how == PIECE_IMPACT) {
-    RIC_TRY(touch(e, run, p->obstacle, p->row, error));
+    RIC_TRY(contact_equation(e, run, p->obstacle, p->row, error));
     RIC_TRY(shooting_hit(e->s, run, error));
   }
-  match(e, run, p->row + (p->how == PIECE_IMPACT ? 1 : 0));
+  continuity_equations(e, run, p->row + (p->how == PIECE_IMPACT ? 1 : 0));
   return RIC_OK;
 }
 
-/* The energy is that of the first state, whose numbers are coordinates or speeds. */
-static ric_status hold_energy(const equations *e, double given, ric_error *error) {
+/* The equation of the energy, that of the first state; its unknowns are coordinates or speeds. */
+static ric_status energy_equation(const equations *e, double given, ric_error *error) {
   ric_shooting *s = e->s;
   const arc_plan *a = &s->arcs;
   double energy;
@@ -258,7 +259,7 @@ static ric_status hold_energy(const equations *e, double given, ric_error *error
   return RIC_OK;
 }
 
-static void hold_phase(const equations *e) {
+static void phase_equation(const equations *e) {
   const ric_shooting *s = e->s;
   size_t row = s->arcs.phase_row;
   if (row == NO_UNKNOWN)
@@ -280,7 +281,7 @@ ric_status shooting_period(const ric_shooting *s, const double *z, double given,
   return ric_fail(error, RIC_ENUMERIC, "period = %g, expected > 0", *period);
 }
 
-static int show_segment(const ric_segment *piece, double end, void *user) {
+static int forward_segment(const ric_segment *piece, double end, void *user) {
   const shooting_observer *o = user;
   o->segment(piece, end, o->user);
   return 0;
@@ -294,7 +295,7 @@ static piece_wish wish_of(const equations *e) {
 
 static ric_status run_piece(const equations *e, size_t k, ric_error *error) {
   const shooting_observer *o = e->observer;
-  const arc_watch watch = {.segment = show_segment, .user = (void *)(uintptr_t)o};
+  const arc_watch watch = {.segment = forward_segment, .user = (void *)(uintptr_t)o};
   piece_run run = shooting_begin(e->s, k, e->z, e->period, wish_of(e));
   double periods = (run.end - run.begin) / e->period;
   if (!(fabs(periods) <= longest_arc))
@@ -316,13 +317,13 @@ ric_status shooting_evaluate(ric_shooting *s, const double *z, double given, dou
     memset(J, 0, s->arcs.unknowns * s->arcs.unknowns * sizeof *J);
   if (e.F_given)
     memset(F_given, 0, s->arcs.unknowns * sizeof *F_given);
-  RIC_TRY(hold_energy(&e, given, error));
+  RIC_TRY(energy_equation(&e, given, error));
   for (size_t k = 0; k < s->arcs.count; k++) {
     if (ric_poll_stops(s->poll))
       return ric_fail(error, RIC_ESTOPPED, "stopped before piece %zu of the motion", k);
     RIC_TRY(run_piece(&e, k, error));
   }
-  hold_phase(&e);
+  phase_equation(&e);
   return RIC_OK;
 }
 

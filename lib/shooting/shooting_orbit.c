@@ -1,4 +1,4 @@
-/* What a run along a solution shows: impacts, amplitude, and the verdict on the motion. */
+/* The orbit of a solution from one integration: impacts, amplitude, and the verdict on the motion. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -10,8 +10,8 @@
 /* A part of the period at which no harmonic of low order is zero. */
 static const double odd_part = 0.2371;
 
-/* The first state, with speeds that no damper leaves alone, in s->x. */
-static void set_state(ric_shooting *s, const double *z, double period) {
+/* Sets s->x to the first state, with changed speeds, so that every damper has a force. */
+static void set_general_state(ric_shooting *s, const double *z, double period) {
   size_t n = s->arcs.coordinates;
   (void)shooting_begin(s, 0, z, period, WISH_STATE);
   for (size_t i = 0; i < s->arcs.speeds; i++)
@@ -30,8 +30,8 @@ static double difference(const double *a, const double *b, double sign, size_t c
   return worst;
 }
 
-/* Whether gaps of users move on with a time that passes. */
-static bool gaps_move(const ric_shooting *s, double t, double later, double tolerance) {
+/* Whether gaps of user-defined systems depend on time explicitly. */
+static bool gaps_depend_on_time(const ric_shooting *s, double t, double later, double tolerance) {
   const ric_system *system = s->system;
   for (size_t j = 0; !system->obstacles && j < system->obstacle_count; j++) {
     double gap = ric_system_gap(system, j, t, s->x), then = ric_system_gap(system, j, later, s->x);
@@ -47,11 +47,11 @@ ric_status shooting_fit(ric_shooting *s, const double *z, double period, double 
   bool timed = shooting_is_even(s) || s->arcs.kind == RIC_MOTION_FORCED;
   double t = odd_part * period, later = t + (timed ? period : t), *rates = s->rates, *other = s->ends;
   *why = NULL;
-  set_state(s, z, period);
+  set_general_state(s, z, period);
   RIC_TRY(rates_at(s, t, rates, error));
   double most = tolerance * (1 + largest(rates, size));
   RIC_TRY(rates_at(s, later, other, error));
-  if (!(difference(rates, other, 1, size) <= most) || gaps_move(s, t, later, tolerance))
+  if (!(difference(rates, other, 1, size) <= most) || gaps_depend_on_time(s, t, later, tolerance))
     *why = timed ? "the forcing does not repeat after the period" : "forces or gaps depend on time";
   for (size_t i = n; shooting_is_even(s) && i < size; i++)
     s->x[i] = -s->x[i];
@@ -59,7 +59,7 @@ ric_status shooting_fit(ric_shooting *s, const double *z, double period, double 
     return RIC_OK;
   RIC_TRY(rates_at(s, -t, other, error));
   if (!(difference(rates + n, other + n, 1, n) <= most))
-    *why = "the system does not run backwards as it runs forwards: damping, or forcing by sines";
+    *why = "the system is not reversible: damping, gyroscopic forces, or forcing by sines";
   return RIC_OK;
 }
 
@@ -68,43 +68,43 @@ ric_status shooting_fit(ric_shooting *s, const double *z, double period, double 
 /* On the value, relative to it. */
 static const double amplitude_tol = 1e-14;
 
-/* A coordinate on a segment that counts up to `end`, with a sign, as a polynomial on [0, 1]. */
-static void read_coordinate(const ric_segment *piece, size_t i, double end, double sign, double *c) {
+/* A coordinate on a segment used up to `end`, times a sign, as a polynomial on [0, 1]. */
+static void coordinate_polynomial(const ric_segment *piece, size_t i, double end, double sign, double *c) {
   double power = sign;
   for (int j = 0; j <= piece->degree; j++, power *= end)
     c[j] = power * piece->coef[(size_t)j * piece->stride + i];
 }
 
-static void see_amplitude(const ric_segment *piece, double end, void *user) {
+static void enlarge_amplitude(const ric_segment *piece, double end, void *user) {
   double *most = user, c[RIC_POLY_DEGREE + 1], at, value;
   for (size_t i = 0; i < piece->coordinates; i++)
     for (int sign = -1; sign <= 1; sign += 2) {
-      read_coordinate(piece, i, end, sign, c);
+      coordinate_polynomial(piece, i, end, sign, c);
       if (ric_poly_minimum(c, piece->degree, -*most, amplitude_tol * *most, &at, &value))
         *most = fmax(*most, -value);
     }
 }
 
 ric_status ric_shooting_amplitude(ric_shooting *s, const double *z, double given, double *amplitude, ric_error *error) {
-  const shooting_observer observer = {.segment = see_amplitude, .user = amplitude};
+  const shooting_observer observer = {.segment = enlarge_amplitude, .user = amplitude};
   *amplitude = 0;
   return shooting_evaluate(s, z, given, s->residual, NULL, NULL, &observer, error);
 }
 
-/* Impacts this near to half the period, over it, are there: solutions have their times to 1e-13. */
+/* Impacts nearer than this to half the period, over it, are at it: the times of solutions have errors of 1e-13. */
 static const double half_tol = 1e-12;
 
-/* A solution being looked at. */
+/* The evaluation of the orbit of a solution. */
 typedef struct examination {
   ric_shooting *s;
   const double *z;
   ric_orbit *orbit; /* NULL */
   bool spectrum;
   double period, origin; /* time at which the motion begins */
-  size_t impacts;        /* filled so far */
+  size_t impacts;        /* number of impacts filled in so far */
 } examination;
 
-/* How much an impulse along the gap of an obstacle changes its rate; NaN for impact maps. */
+/* Change of the gap rate by a unit impulse along the gap; NaN for impact maps. */
 static double mobility(examination *l, size_t obstacle, double t, const double *x) {
   ric_shooting *s = l->s;
   contact_direction d = {.g = s->contact, .w = s->contact + s->arcs.speeds};
@@ -121,7 +121,7 @@ static double time_in_period(const examination *l, double time) {
   return t < 0 ? t + l->period : t;
 }
 
-/* An impact at a state just before it, or just after it (`sign` -1): elastic ones turn the rate around. */
+/* Adds an impact with its state just before it, or just after it (`sign` -1): elastic impacts reverse the gap rate. */
 static void add_impact(examination *l, size_t obstacle, double time, const double *x, double sign) {
   const ric_system *system = l->s->system;
   ric_orbit *o = l->orbit;
@@ -138,8 +138,8 @@ static bool is_even_motion(const examination *l) {
   return l->s->arcs.kind == RIC_MOTION_EVEN;
 }
 
-/* At an end of the half period. @param hit  which obstacle each coordinate hits there */
-static ric_status turn_gaps(ric_shooting *s, const size_t *hit, double time, ric_error *error) {
+/* Gaps at an end of the half period. @param hit  obstacle that each coordinate hits there */
+static ric_status set_turning_gaps(ric_shooting *s, const size_t *hit, double time, ric_error *error) {
   size_t n = s->arcs.coordinates;
   RIC_TRY(ric_system_rate(s->system, time, s->x, s->x + n, s->rates, s->rates + n, error));
   system_gaps_turn(&s->gaps, hit, time, s->x, s->rates);
@@ -155,10 +155,10 @@ static ric_status begin_orbit(examination *l, const piece_run *run, ric_error *e
   for (size_t i = 0; i < s->arcs.coordinates; i++)
     if (s->arcs.at_start[i] != NO_UNKNOWN)
       add_impact(l, s->arcs.at_start[i], 0, s->x, -1);
-  return turn_gaps(l->s, s->arcs.at_start, 0, error);
+  return set_turning_gaps(l->s, s->arcs.at_start, 0, error);
 }
 
-static ric_status begins(const piece_run *run, void *user, ric_error *error) {
+static ric_status begin_piece(const piece_run *run, void *user, ric_error *error) {
   examination *l = user;
   ric_shooting *s = l->s;
   bool first = run->piece == s->arcs.pieces;
@@ -168,14 +168,15 @@ static ric_status begins(const piece_run *run, void *user, ric_error *error) {
     return RIC_OK;
   if (!first && (run->piece - 1)->how == PIECE_IMPACT)
     system_gaps_after(&s->gaps, (run->piece - 1)->obstacle);
-  if (run->end < run->begin - s->grazing_tol * l->period) /* impacts of one time are in order either way */
+  if (run->end < run->begin - s->grazing_tol * l->period) /* the order of simultaneous impacts is free */
     s->out_of_order = true;
   return first ? begin_orbit(l, run, error) : RIC_OK;
 }
 
-/* State at half the period, of motions that are not even: where a segment passes it. One that ends there has the state
- * before an impact, and the next one has not; rounding must not leave it to neither. */
-static void keep_half(examination *l, const ric_segment *piece, double end) {
+/* State at half the period, of motions that are not even: on the segment that contains it. At the end of a segment
+ * it is the state before an impact, so a segment does not contain its start; the tolerance ensures that one of both
+ * contains it. */
+static void set_half_state(examination *l, const ric_segment *piece, double end) {
   double x = (l->origin + l->period / 2 - piece->start) / piece->length, slack = half_tol * l->period;
   slack /= fabs(piece->length);
   if (!(x > slack && x <= end + slack))
@@ -184,11 +185,11 @@ static void keep_half(examination *l, const ric_segment *piece, double end) {
                     l->orbit->speeds > 0 ? l->orbit->v_half + piece->first : NULL);
 }
 
-static void see_half_period(const ric_segment *piece, double end, void *user) {
+static void evaluate_segment(const ric_segment *piece, double end, void *user) {
   examination *l = user;
   system_gaps_segment(&l->s->gaps, piece, end);
   if (!is_even_motion(l))
-    keep_half(l, piece, end);
+    set_half_state(l, piece, end);
 }
 
 /* The state at half the period, and the impacts there. */
@@ -200,10 +201,10 @@ static ric_status end_half(examination *l, const piece_run *run, ric_error *erro
   for (size_t i = 0; i < n; i++)
     if (s->arcs.at_half[i] != NO_UNKNOWN)
       add_impact(l, s->arcs.at_half[i], run->end, s->x, 1);
-  return turn_gaps(l->s, s->arcs.at_half, run->end, error);
+  return set_turning_gaps(l->s, s->arcs.at_half, run->end, error);
 }
 
-static ric_status ends(const piece_run *run, void *user, ric_error *error) {
+static ric_status end_piece(const piece_run *run, void *user, ric_error *error) {
   examination *l = user;
   const ric_shooting *s = l->s;
   if (l->spectrum)
@@ -217,7 +218,7 @@ static ric_status ends(const piece_run *run, void *user, ric_error *error) {
   return run->piece->how == PIECE_HALF ? end_half(l, run, error) : RIC_OK;
 }
 
-/* The second half of an even motion mirrors the impacts between. */
+/* Adds the mirror images of the impacts between: those in the second half of an even motion. */
 static void add_mirrored(examination *l) {
   ric_orbit *o = l->orbit;
   size_t first = l->s->arcs.start_count, count = l->s->arcs.sequence_count;
@@ -238,7 +239,7 @@ static ric_status check_room(const ric_shooting *s, const ric_orbit *orbit, ric_
                   orbit->particles, orbit->impacts, s->arcs.coordinates, ric_shooting_impacts(s));
 }
 
-/* Which obstacles the motion hits is known from the beginning. */
+/* Marks the obstacles that the motion hits. */
 static ric_status reserve_gaps(ric_shooting *s, ric_error *error) {
   const arc_plan *a = &s->arcs;
   system_gaps *g = &s->gaps;
@@ -273,7 +274,7 @@ static ric_status finish_orbit(examination *l, const double *F, ric_error *error
   const ric_shooting *s = l->s;
   ric_orbit *o = l->orbit;
   if (s->gaps.trouble)
-    return ric_fail(error, RIC_ECALLBACK, "a gap of the motion could not be read: %s", s->gaps.trouble);
+    return ric_fail(error, RIC_ECALLBACK, "a gap of the motion could not be evaluated: %s", s->gaps.trouble);
   add_mirrored(l);
   o->residual = largest(F, s->arcs.unknowns);
   return RIC_OK;
@@ -282,8 +283,11 @@ static ric_status finish_orbit(examination *l, const double *F, ric_error *error
 ric_status shooting_examine(ric_shooting *s, const double *z, double given, int what, double *F, double *J,
                             double *F_given, ric_orbit *orbit, ric_error *error) {
   examination l = {.s = s, .z = z, .orbit = what & EXAMINE_ORBIT ? orbit : NULL, .spectrum = what & EXAMINE_SPECTRUM};
-  const shooting_observer observer = {
-      .begins = begins, .segment = l.orbit ? see_half_period : NULL, .ends = ends, .whole = l.spectrum, .user = &l};
+  const shooting_observer observer = {.begins = begin_piece,
+                                      .segment = l.orbit ? evaluate_segment : NULL,
+                                      .ends = end_piece,
+                                      .whole = l.spectrum,
+                                      .user = &l};
   double *residual = F ? F : s->residual;
   RIC_TRY(reserve(&l, error));
   RIC_TRY(shooting_period(s, z, given, &l.period, error));
@@ -295,13 +299,13 @@ ric_status shooting_examine(ric_shooting *s, const double *z, double given, int 
   return l.orbit ? finish_orbit(&l, residual, error) : RIC_OK;
 }
 
-/* The verdict on a motion that shooting has found. */
+/* The verdict on a motion found by shooting. */
 
-/* Residuals above it, relative to 1 + the largest unknown, are no solution's. */
+/* A motion with a larger residual, relative to 1 + the largest unknown, is no solution. */
 static const double residual_tol = 1e-6;
 
-/* Solutions of the equations that are no motions. */
-static ric_status look_for_failure(ric_shooting *s, const double *z, ric_orbit *o, ric_error *error) {
+/* Sets `failed` for solutions of the equations that are not motions. */
+static ric_status set_failure(ric_shooting *s, const double *z, ric_orbit *o, ric_error *error) {
   const arc_plan *a = &s->arcs;
   const char *why;
   double most = residual_tol * (1 + largest(z, a->unknowns));
@@ -315,7 +319,7 @@ static ric_status look_for_failure(ric_shooting *s, const double *z, ric_orbit *
   else if (!(o->residual <= most))
     admissibility_violated(o, o->residual, most);
   else
-    snprintf(o->reason, sizeof o->reason, "energy is not conserved: the motion closes but for %.3g", added);
+    snprintf(o->reason, sizeof o->reason, "energy is not conserved: the ends of the motion differ by %.3g", added);
   return RIC_OK;
 }
 
@@ -330,7 +334,7 @@ static ric_status set_start(ric_shooting *s, const double *z, double given, ric_
   return RIC_OK;
 }
 
-ric_status shooting_judge(ric_shooting *s, const double *z, double given, ric_orbit *o, ric_error *error) {
+ric_status shooting_verdict(ric_shooting *s, const double *z, double given, ric_orbit *o, ric_error *error) {
   RIC_TRY(set_start(s, z, given, o, error));
   o->condition = NAN;
   o->mode = -1;
@@ -341,10 +345,10 @@ ric_status shooting_judge(ric_shooting *s, const double *z, double given, ric_or
                          .out_of_order = s->out_of_order};
   admissibility_clearance(&f, o);
   admissibility_find(&f, o);
-  return look_for_failure(s, z, o, error);
+  return set_failure(s, z, o, error);
 }
 
 ric_status ric_shooting_orbit(ric_shooting *s, const double *z, double given, ric_orbit *orbit, ric_error *error) {
   RIC_TRY(shooting_examine(s, z, given, EXAMINE_ORBIT, NULL, NULL, NULL, orbit, error));
-  return shooting_judge(s, z, given, orbit, error);
+  return shooting_verdict(s, z, given, orbit, error);
 }

@@ -11,7 +11,7 @@
 
 /* Derivatives of the state of a motion between two of its times. */
 
-/* Ends of pieces this near to one of the times, over the period, are at it: after them. */
+/* Ends of pieces nearer than this to one of the times, over the period, are at it; the piece ends before it. */
 static const double end_tol = 1e-12;
 
 typedef struct transfer {
@@ -53,8 +53,8 @@ ric_status shooting_spectrum_jump(ric_shooting *s, const piece_run *run, ric_err
   return RIC_OK;
 }
 
-/* The part of a piece that lies between the times; `shift` is the period before its own that it is looked at in. */
-static ric_status pass(transfer *k, size_t index, double shift, ric_error *error) {
+/* Integrates the part of a piece between the times. @param shift  the piece is taken that many time units later */
+static ric_status pass_piece(transfer *k, size_t index, double shift, ric_error *error) {
   ric_shooting *s = k->s;
   const double slack = end_tol * k->period;
   const piece_run run = shooting_begin(s, index, k->z, k->period, WISH_STATE);
@@ -121,8 +121,8 @@ static ric_status create(ric_shooting *s, shooting_spectrum **spectrum, ric_erro
     return ric_fail(error, RIC_ENOMEM, "no memory for a matrix of size %zu", size);
   }
   k->product = k->matrix + size * size;
-  k->carried = k->product + size * size;
-  k->start = k->carried + size * (size + 1);
+  k->vectors = k->product + size * size;
+  k->start = k->vectors + size * (size + 1);
   k->half = k->start + size;
   k->after = k->half + size;
   ric_status status = tangent_jump_init(&k->jump, s->system, &s->law, size, error);
@@ -175,7 +175,7 @@ ric_status ric_shooting_transfer(ric_shooting *s, const double *z, double given,
   shooting_spectrum_identity(s->spectrum);
   for (int round = 0; round < 2; round++)
     for (size_t p = 0; p < s->arcs.count; p++)
-      RIC_TRY(pass(&k, p, round * k.period, error));
+      RIC_TRY(pass_piece(&k, p, round * k.period, error));
   if (!k.begun)
     return ric_fail(error, RIC_ENUMERIC, "no arc of the motion is at t = %g", from);
   if (matrix)
@@ -183,19 +183,19 @@ ric_status ric_shooting_transfer(ric_shooting *s, const double *z, double given,
   return RIC_OK;
 }
 
-/* Whether time does not enter an even motion. */
-static bool is_free(const ric_shooting *s) {
+/* Whether the forces of an even motion do not depend on time. */
+static bool is_unforced(const ric_shooting *s) {
   return !s->system->model->forced(s->system);
 }
 
-/* What was carried along a piece, times the matrix up to its beginning. */
-static void multiply(const ric_shooting *s, const piece_run *run) {
+/* Multiplies the matrix up to the beginning of a piece by the tangent vectors along the piece. */
+static void multiply_by_tangents(const ric_shooting *s, const piece_run *run) {
   shooting_spectrum *k = s->spectrum;
   memset(k->product, 0, k->size * k->size * sizeof *k->product);
   for (size_t l = 0; l < k->size; l++) {
-    const double *before = entry(k, l, 0), *carried = run->carried + shooting_column(s, run, l);
+    const double *before = entry(k, l, 0), *vectors = run->vectors + shooting_column(s, run, l);
     for (size_t i = 0; i < k->size; i++) {
-      double x = carried[i * run->columns], *row = k->product + i * k->size;
+      double x = vectors[i * run->columns], *row = k->product + i * k->size;
       for (size_t j = 0; x != 0 && j < k->size; j++)
         row[j] += x * before[j];
     }
@@ -205,15 +205,15 @@ static void multiply(const ric_shooting *s, const piece_run *run) {
 
 /* --- even motions ------------------------------------------------------------------------------------------------- */
 
-/* Half of a kick: what an impact at a turning point adds to the speed of its coordinate, per displacement. Of a
- * saltation matrix of an elastic impact the entry is 2 a / v-, a the acceleration and v- the speed before. */
-static double half_kick(double acceleration, double speed_before) {
+/* Half of the saltation of an impact at a turning point: the change of the speed of its coordinate per displacement.
+ * In the saltation matrix of an elastic impact the entry is 2 a / v-, a the acceleration and v- the speed before. */
+static double half_saltation(double acceleration, double speed_before) {
   return -acceleration / speed_before;
 }
 
-/* Rates at a state, and whether every impact there is fast enough; those of inadmissible motions may come from the
- * other side. */
-static ric_status look_at_turning(ric_shooting *s, const size_t *hit, double t, ric_error *error) {
+/* Sets the rates at a turning point, and `grazing` if an impact there is too slow. The speeds of inadmissible
+ * motions may have the other sign. */
+static ric_status set_turning_rates(ric_shooting *s, const size_t *hit, double t, ric_error *error) {
   size_t n = s->arcs.coordinates;
   RIC_TRY(ric_system_rate(s->system, t, s->x, s->x + n, s->rates, s->rates + n, error));
   for (size_t i = 0; i < n; i++) {
@@ -236,21 +236,21 @@ static void set_start(ric_shooting *s) {
     *entry(k, hit ? n + i : i, i) = hit ? 1 / mass : 1;
     *entry(k, hit ? i : n + i, n + i) = hit ? -1 : 1 / mass;
     if (hit)
-      *entry(k, n + i, n + i) = -half_kick(s->rates[n + i], -s->x[n + i]);
+      *entry(k, n + i, n + i) = -half_saltation(s->rates[n + i], -s->x[n + i]);
     k->start[n + i] = hit ? -s->x[n + i] : mass * s->rates[n + i];
   }
 }
 
-/* Rows just before the impacts at T/2 become (s, a) in their middle. */
+/* Converts rows just before the impacts at T/2 to (s, a) in the middle of the impacts. */
 static void set_half(ric_shooting *s) {
   shooting_spectrum *k = s->spectrum;
   size_t n = s->arcs.coordinates;
   for (size_t i = 0; i < n; i++) {
     double mass = s->system->model->mass(s->system, i), *q = entry(k, i, 0), *v = entry(k, n + i, 0);
     bool hit = s->arcs.at_half[i] != NO_UNKNOWN;
-    double kick = hit ? half_kick(s->rates[n + i], s->x[n + i]) : 0;
+    double saltation = hit ? half_saltation(s->rates[n + i], s->x[n + i]) : 0;
     for (size_t j = 0; j < k->size; j++) {
-      double place = q[j], momentum = mass * (v[j] + kick * place);
+      double place = q[j], momentum = mass * (v[j] + saltation * place);
       q[j] = hit ? momentum : place;
       v[j] = hit ? -place : momentum;
     }
@@ -261,7 +261,7 @@ static void set_half(ric_shooting *s) {
 ric_status shooting_spectrum_begin(ric_shooting *s, ric_error *error) {
   s->spectrum->grazing = false;
   if (shooting_is_even(s))
-    RIC_TRY(look_at_turning(s, s->arcs.at_start, 0, error));
+    RIC_TRY(set_turning_rates(s, s->arcs.at_start, 0, error));
   if (shooting_is_even(s))
     set_start(s);
   else
@@ -272,12 +272,12 @@ ric_status shooting_spectrum_begin(ric_shooting *s, ric_error *error) {
 ric_status shooting_spectrum_pass(ric_shooting *s, const piece_run *run, ric_error *error) {
   if (s->spectrum->grazing)
     return RIC_OK;
-  multiply(s, run);
+  multiply_by_tangents(s, run);
   if (run->piece->how == PIECE_IMPACT)
     return shooting_spectrum_jump(s, run, error);
   if (run->piece->how != PIECE_HALF)
     return RIC_OK;
-  RIC_TRY(look_at_turning(s, s->arcs.at_half, run->end, error));
+  RIC_TRY(set_turning_rates(s, s->arcs.at_half, run->end, error));
   if (!s->spectrum->grazing)
     set_half(s);
   return RIC_OK;
@@ -302,7 +302,7 @@ static void set_block(ric_shooting *s) {
   }
 }
 
-/* By QR with column pivoting, since the LU of GSL allocates: each reflection of Q has the determinant -1, one with
+/* By QR with column pivoting, since GSL's LU allocates memory: each reflection of Q has the determinant -1, one with
  * tau = 0 is the identity. */
 static double determinant(const shooting_spectrum *k, size_t size) {
   int sign;
@@ -329,9 +329,9 @@ static double determinant_of_block(const ric_shooting *s, size_t row, size_t col
   return determinant(k, n);
 }
 
-/* An n x n block bordered by the a-parts of the motion's rates, at T/2 on the right and at the start below. B takes the
- * latter to zero and its transpose the former; C takes s to -f_half dT/2 for a neighbouring motion of the period T +
- * dT. */
+/* Determinant of an n x n block bordered by the a-parts of the motion's rates, at T/2 on the right and at the start
+ * below. B maps the latter to zero and its transpose the former; C maps s to -f_half dT/2 for a neighbouring motion
+ * of the period T + dT. */
 static double determinant_of_bordered(const ric_shooting *s, size_t row, size_t column) {
   const shooting_spectrum *k = s->spectrum;
   size_t n = s->arcs.coordinates;
@@ -348,8 +348,8 @@ static void even_tests(ric_shooting *s, spectrum_tests *t) {
   size_t n = s->arcs.coordinates;
   t->minus_one[0] = determinant_of_block(s, 0, 0);
   t->minus_one[1] = determinant_of_block(s, n, n);
-  t->breaking = is_free(s) ? determinant_of_bordered(s, 0, n) : determinant_of_block(s, 0, n);
-  if (is_free(s))
+  t->breaking = is_unforced(s) ? determinant_of_bordered(s, 0, n) : determinant_of_block(s, 0, n);
+  if (is_unforced(s))
     t->energy = determinant_of_bordered(s, n, 0);
 }
 
@@ -375,7 +375,7 @@ static size_t trivial_of(const ric_shooting *s) {
   return s->arcs.kind == RIC_MOTION_AUTONOMOUS ? 1 : s->arcs.kind == RIC_MOTION_CONSERVATIVE ? 2 : 0;
 }
 
-static void say_grazing(const shooting_spectrum *k, ric_multipliers *m) {
+static void fail_grazing(const shooting_spectrum *k, ric_multipliers *m) {
   char reason[sizeof m->reason];
   snprintf(reason, sizeof reason, "grazing: obstacle %zu is not hit with a gap rate below zero", k->obstacle);
   ric_multipliers_fail(m, reason);
@@ -384,7 +384,7 @@ static void say_grazing(const shooting_spectrum *k, ric_multipliers *m) {
 static ric_status even_multipliers(ric_shooting *s, const ric_multiplier_options *o, ric_multipliers *m,
                                    ric_error *error) {
   set_block(s);
-  RIC_TRY(even_spectrum_find(&s->spectrum->even, is_free(s), error));
+  RIC_TRY(even_spectrum_find(&s->spectrum->even, is_unforced(s), error));
   even_spectrum_multipliers(&s->spectrum->even, o, m);
   return RIC_OK;
 }
@@ -397,7 +397,7 @@ ric_status shooting_multipliers(ric_shooting *s, const ric_multiplier_options *o
     return ric_fail(error, RIC_EINVAL, "room for %zu multipliers, expected %zu", m->dimension, s->arcs.size);
   ric_multipliers_fail(m, "not computed");
   if (s->spectrum->grazing) {
-    say_grazing(s->spectrum, m);
+    fail_grazing(s->spectrum, m);
     return RIC_OK;
   }
   gsl_error_handler_t *handler = gsl_set_error_handler_off();

@@ -42,7 +42,7 @@ static void assert_even_shot_fails(const ric_lattice *lattice) {
   const ric_obstacle wall = ric_obstacle_wall(0, 1);
   for (int hits = 0; hits < 2; hits++) {
     shooting_solution s = even_shot(lattice_system(lattice, &wall, 1), hits);
-    assert_no_motion(&s, "does not run backwards");
+    assert_no_motion(&s, "is not reversible");
     shooting_solution_clear(&s);
   }
 }
@@ -92,7 +92,7 @@ static void even_motions_of_gyroscopic_systems_are_none(void **state) {
   ric_system *system = NULL;
   assert_int_equal(ric_system_create_mck(&model, NULL, 0, &system, NULL), RIC_OK);
   shooting_solution s = even_shot(system, false);
-  assert_no_motion(&s, "does not run backwards");
+  assert_no_motion(&s, "is not reversible");
   shooting_solution_clear(&s);
 }
 
@@ -255,7 +255,7 @@ static void conservative_motions_whose_ends_stay_apart_along_the_gradient_are_re
   double F[3];
   ric_error error;
   assert_int_equal(ric_shooting_solve(s.shooting, s.z, s.given, 0, NULL, &error), RIC_ENUMERIC);
-  if (!strstr(error.message, "no motion: its ends are 0.772 apart"))
+  if (!strstr(error.message, "not closed: its ends differ by 0.772"))
     fail_msg("\"%s\" does not say that the ends are apart", error.message);
   /* Not for want of convergence: the equations hold, with the lambda of the closed form. */
   assert_int_equal(ric_shooting_residual(s.shooting, s.z, s.given, F, NULL, NULL, NULL), RIC_OK);
