@@ -1,4 +1,4 @@
-/* What is said of attractors: names, defaults, and the period of iterates. */
+/* Attractors: names, defaults, the period of iterates, and the distance of two attractors. */
 #include "attractor.h"
 
 #include <math.h>
@@ -13,7 +13,7 @@ ric_attractor_options ric_attractor_options_default(void) {
 }
 
 enum { MOST_PERIOD = 100000 };
-static const double most_iterates = 0x1p52; /* their sum is then a number of any kind */
+static const double most_iterates = 0x1p52; /* the sum of two is exact in every type of number */
 
 ric_status ric_attractor_options_check(const ric_attractor_options *o, size_t size, ric_error *error) {
   if (!((double)o->transient <= most_iterates))
@@ -54,12 +54,12 @@ const char *ric_map_lanes_name(ric_map_lanes lanes) {
   return (unsigned)lanes < RIC_MAP_LANES_KINDS ? names[lanes] : "unknown";
 }
 
-/* Not fmax, which is a call. */
+/* Not fmax, which is a function call. */
 static double larger(double a, double b) {
   return a > b ? a : b;
 }
 
-/* By how much a number differs at most. @param x  [count][stride] */
+/* The largest difference of two values of a number. @param x  [count][stride] */
 static double extent_of(const double *x, size_t stride, size_t count, double *largest) {
   double low = x[0], high = x[0];
   for (size_t k = 1; k < count; k++) {
@@ -70,17 +70,17 @@ static double extent_of(const double *x, size_t stride, size_t count, double *la
   return high - low;
 }
 
-/* Whether one number is back within `near` after `period`, wherever it sets out. */
-static bool near_again(const double *x, size_t stride, size_t pairs, size_t period, double near) {
+/* Whether one number returns to within `near` after `period`, from every start. */
+static bool returns_within(const double *x, size_t stride, size_t pairs, size_t period, double near) {
   for (size_t k = 0; k < pairs; k++)
     if (!(fabs(x[k * stride] - x[(k + period) * stride]) <= near))
       return false;
   return true;
 }
 
-/* Whether what one number is off after `period` grows: from the first to the last pairs, whole periods later, so that
- * the same places of the cycle are compared. */
-static bool parts(const double *x, size_t stride, size_t pairs, size_t period, double noise) {
+/* Whether the difference of one number after `period` grows: from the first pairs to the last, whole periods later,
+ * so that equal places of the cycle are compared. */
+static bool diverges_from_cycle(const double *x, size_t stride, size_t pairs, size_t period, double noise) {
   size_t whole = pairs / (2 * period), shift = (whole > 0 ? whole : 1) * period;
   double first = 0, last = 0;
   for (size_t k = 0; k + shift < pairs; k++) {
@@ -91,11 +91,12 @@ static bool parts(const double *x, size_t stride, size_t pairs, size_t period, d
   return last > larger(first, noise);
 }
 
-/* States in a row, and what is known of them. */
+/* Consecutive states, and the tolerances of their comparison. */
 typedef struct row {
   const double *states; /* [count][stride] */
   size_t size, stride, count;
-  double tolerance, floor; /* differences below the floor are noise, in all numbers: they come from each other */
+  double tolerance, floor; /* differences below the floor are noise; one floor for all numbers, since they depend on
+                            * each other */
 } row;
 
 static double near_of(const row *r, size_t i) {
@@ -107,37 +108,40 @@ static bool returns(const row *r, size_t period) {
   size_t pairs = r->count - period;
   for (size_t i = 0; i < r->size; i++) {
     const double *x = r->states + i;
-    if (!near_again(x, r->stride, pairs, period, near_of(r, i)) || parts(x, r->stride, pairs, period, r->floor))
+    if (!returns_within(x, r->stride, pairs, period, near_of(r, i)) ||
+        diverges_from_cycle(x, r->stride, pairs, period, r->floor))
       return false;
   }
   return true;
 }
 
-/* The largest difference of a number `lag` iterates later, from iterate `from` on. */
-static double lag_of(const row *r, size_t i, size_t lag, size_t from, size_t count) {
+/* The largest difference of a number and its value `lag` iterates later, from iterate `from` on. */
+static double difference_after(const row *r, size_t i, size_t lag, size_t from, size_t count) {
   double most = 0;
   for (size_t k = from; k < from + count; k++)
     most = larger(most, fabs(r->states[k * r->stride + i] - r->states[(k + lag) * r->stride + i]));
   return most;
 }
 
-/* Whether a number comes to a cycle of half the period: beside a flip it does so from both sides in turn, and slowly,
- * and is back on the same side long before it is there. What is left of its difference after half the period is
- * extrapolated, as it shrinks by the same factor as that after the whole one; at the flip itself, where it falls as the
- * root of time, a third of it would go. */
-static bool comes_to_half(const row *r, size_t i, size_t period) {
+/* Whether a number converges to a cycle of half the period: near a flip it converges slowly and alternates between
+ * two sides, and it returns to the same side, within the tolerance, long before it has converged. The limit of its
+ * difference after half the period is extrapolated, since that decays by the same factor as the difference after the
+ * whole period. At the flip itself it decays as the square root of time, and the test would remove a third of it. */
+static bool converges_to_half(const row *r, size_t i, size_t period) {
   const size_t shift = (r->count - period) / period * (period / 2), count = r->count - period - shift;
-  const double whole = lag_of(r, i, period, 0, count), shrunk = whole - lag_of(r, i, period, shift, count);
-  const double half = lag_of(r, i, period / 2, 0, count), fallen = half - lag_of(r, i, period / 2, shift, count);
+  const double whole = difference_after(r, i, period, 0, count),
+               shrunk = whole - difference_after(r, i, period, shift, count);
+  const double half = difference_after(r, i, period / 2, 0, count),
+               fallen = half - difference_after(r, i, period / 2, shift, count);
   if (half <= near_of(r, i))
     return true;
   return whole > r->floor && shrunk > 0 && fallen * whole > half / 4 * shrunk;
 }
 
-static bool halves(const row *r, size_t period) {
+static bool has_half_period(const row *r, size_t period) {
   bool half = period % 2 == 0;
   for (size_t i = 0; i < r->size && half; i++)
-    half = comes_to_half(r, i, period);
+    half = converges_to_half(r, i, period);
   return half;
 }
 
@@ -150,9 +154,9 @@ size_t period_find(const double *states, size_t size, size_t stride, size_t limi
   const row r = {states, size, stride, 2 * limit + 1, tolerance, noise * largest};
   const double near = larger(tolerance * extent, r.floor);
   for (size_t p = 1; p <= limit; p++)
-    if (near_again(states, stride, 2 * limit + 1 - p, p, near) && /* at once where there is none */
+    if (returns_within(states, stride, 2 * limit + 1 - p, p, near) && /* fails at once for most periods */
         returns(&r, p))
-      return halves(&r, p) ? p / 2 : p;
+      return has_half_period(&r, p) ? p / 2 : p;
   return 0;
 }
 
@@ -171,7 +175,7 @@ static int compare_values(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
-/* How far that of sorted a is which is farthest from all of sorted b. */
+/* The largest distance of a number of sorted a from the nearest of sorted b. */
 static double one_sided_distance(const double *a, const double *b, size_t count) {
   double most = 0;
   for (size_t i = 0, k = 0; i < count; i++) {

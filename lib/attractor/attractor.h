@@ -4,13 +4,14 @@
 
 #include <stddef.h>
 
-/** The smallest period up to `limit` of consecutive states, 0 when there is none (attractor.h says when there is one).
+/** The smallest period up to `limit` of consecutive states, 0 when there is none (the definition is in
+ *  ricochet/attractor.h).
  *  @param states  [2 limit + 1][stride], of which the first `size` numbers count
  *  @param tolerance  relative to the extent of each number
- *  @param noise  relative to the largest number: smaller differences tell nothing */
+ *  @param noise  relative to the largest number: smaller differences do not count */
 size_t period_find(const double *states, size_t size, size_t stride, size_t limit, double tolerance, double noise);
 
-/** Place of the first state whose number `observe` is smallest. @param states  [count][stride] */
+/** Index of the first state whose number `observe` is smallest. @param states  [count][stride] */
 size_t period_lowest(const double *states, size_t stride, size_t count, size_t observe);
 
 #endif

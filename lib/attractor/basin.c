@@ -8,7 +8,7 @@
 struct ric_basin {
   ric_basin_options options;
   size_t size, added, count, room;
-  ric_basin_attractor *attractors; /* [room], whose states are their own */
+  ric_basin_attractor *attractors; /* [room]; the basin owns their states */
 };
 
 ric_basin_options ric_basin_options_default(void) {
@@ -38,7 +38,7 @@ void ric_basin_destroy(ric_basin **basin) {
   *basin = NULL;
 }
 
-static bool is_near(const ric_basin *basin, const double *a, const double *b) {
+static bool is_same(const ric_basin *basin, const double *a, const double *b) {
   double apart = 0, largest = 0;
   for (size_t i = 0; i < basin->size; i++) {
     apart = fmax(apart, fabs(a[i] - b[i]));
@@ -47,12 +47,12 @@ static bool is_near(const ric_basin *basin, const double *a, const double *b) {
   return apart <= basin->options.same_tol * largest;
 }
 
-/* Index of the attractor of a run, the number of those found where it is a new one. */
-static size_t find(const ric_basin *basin, const ric_attractor *run, size_t period) {
+/* Index of the attractor of a run; the number of known ones if it is new. */
+static size_t find_attractor(const ric_basin *basin, const ric_attractor *run, size_t period) {
   size_t i = 0;
   for (; i < basin->count; i++) {
     const ric_basin_attractor *known = &basin->attractors[i];
-    if (known->period == period && (period == 0 || is_near(basin, run->lowest, known->lowest)))
+    if (known->period == period && (period == 0 || is_same(basin, run->lowest, known->lowest)))
       break;
   }
   return i;
@@ -89,7 +89,7 @@ ric_status ric_basin_add(ric_basin *basin, const ric_attractor *run, int64_t *la
     return ric_fail(error, RIC_EINVAL, "a run of period %zu without its lowest state", period);
   int64_t found = RIC_BASIN_NONE;
   if (settled) {
-    const size_t i = find(basin, run, period);
+    const size_t i = find_attractor(basin, run, period);
     found = i < basin->options.limit ? (int64_t)i : RIC_BASIN_OTHER;
     if (found >= 0 && i == basin->count)
       RIC_TRY(add_attractor(basin, run, period, error));

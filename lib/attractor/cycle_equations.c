@@ -1,4 +1,4 @@
-/* Cycles with a fixed itinerary: their equations, and the curve that they follow along the parameter. */
+/* Cycles with a fixed itinerary: their equations, and the curve of cycles along the parameter. */
 #include "cycle_equations.h"
 
 #include <float.h>
@@ -12,10 +12,10 @@
 
 enum { MOST_PERIOD = 10000, MOST_UNKNOWNS = 500 };
 
-/* Pieces end where the powers of L exceed it: what errors grow by in one of them. */
+/* Pieces end where the powers of L exceed it: the growth of errors within one of them. */
 static const double most_growth = 100;
 
-/* States are the same when they differ by less, over the largest of the cycle. */
+/* Two states are equal when they differ by less, over the largest number of the cycle. */
 static const double same = 1e-9;
 
 static void swap(double **a, double **b) {
@@ -49,7 +49,7 @@ static ric_status check_cycle(const ric_map_line *line, double p, size_t period,
   return RIC_OK;
 }
 
-static void take_itinerary(cycle_equations *e, const double *z) {
+static void set_itinerary(cycle_equations *e, const double *z) {
   size_t m = e->map.size;
   memcpy(e->z, z, m * sizeof *z);
   for (size_t k = 0; k < e->period; k++) {
@@ -91,7 +91,7 @@ static void cut(cycle_equations *e) {
   e->starts[e->pieces] = e->period;
 }
 
-static ric_status no_memory(const cycle_equations *e, ric_error *error) {
+static ric_status fail_without_memory(const cycle_equations *e, ric_error *error) {
   return ric_fail(error, RIC_ENOMEM, "no memory for a cycle of period %zu", e->period);
 }
 
@@ -104,11 +104,11 @@ static ric_status allocate_cycle(cycle_equations *e, ric_error *error) {
   e->slopes = calloc(m * m, sizeof *e->slopes);
   e->next_slopes = calloc(m * m, sizeof *e->next_slopes);
   if (!(e->hits && e->starts && e->z && e->next && e->slopes && e->next_slopes))
-    return no_memory(e, error);
+    return fail_without_memory(e, error);
   return ric_multipliers_init(&e->multipliers, m, error);
 }
 
-/* Room for the slopes by all unknowns: there are at least as many as states have numbers. */
+/* Allocates derivatives by all unknowns; there are at least as many unknowns as numbers of a state. */
 static ric_status reserve_cycle(cycle_equations *e, ric_error *error) {
   size_t m = e->map.size;
   e->unknowns = e->pieces * m + e->impacts;
@@ -119,7 +119,7 @@ static ric_status reserve_cycle(cycle_equations *e, ric_error *error) {
   free(e->next_slopes);
   e->slopes = calloc(m * e->unknowns, sizeof *e->slopes);
   e->next_slopes = calloc(m * e->unknowns, sizeof *e->next_slopes);
-  return e->slopes && e->next_slopes ? RIC_OK : no_memory(e, error);
+  return e->slopes && e->next_slopes ? RIC_OK : fail_without_memory(e, error);
 }
 
 ric_status cycle_equations_set(cycle_equations *e, double p, ric_error *error) {
@@ -138,7 +138,7 @@ ric_status cycle_equations_init(cycle_equations *e, const ric_map_line *line, do
   RIC_TRY(ric_grazing_map_init(&e->map, line->size, error));
   RIC_TRY(allocate_cycle(e, error));
   RIC_TRY(cycle_equations_set(e, p, error));
-  take_itinerary(e, z);
+  set_itinerary(e, z);
   cut(e);
   return reserve_cycle(e, error);
 }
@@ -155,7 +155,7 @@ void cycle_equations_clear(cycle_equations *e) {
   *e = (cycle_equations){0};
 }
 
-/* --- along the cycle ---------------------------------------------------------------------------------------------- */
+/* --- iterates ----------------------------------------------------------------------------------------------------- */
 
 void cycle_equations_guess(cycle_equations *e, const double *z, double *x) {
   size_t m = e->map.size;
@@ -203,7 +203,7 @@ static void advance_iterates(cycle_equations *e, bool with_slopes) {
   swap(&e->slopes, &e->next_slopes);
 }
 
-/* The impact's part of an iterate. */
+/* The contribution of the impact to an iterate. */
 static void add_impact(cycle_equations *e, double y, size_t which) {
   size_t m = e->map.size, column = e->pieces * m + which;
   double s = e->map.stretch;
@@ -213,7 +213,7 @@ static void add_impact(cycle_equations *e, double y, size_t which) {
   }
 }
 
-/* The end of a piece is the beginning of the next, or the first. */
+/* The end of a piece is the beginning of the next, or of the first. */
 static void closing_rows(const cycle_equations *e, size_t piece, const double *x, double *F, double *J, size_t stride) {
   size_t m = e->map.size, next = piece + 1 == e->pieces ? 0 : (piece + 1) * m;
   for (size_t i = 0; i < m; i++) {
@@ -270,8 +270,8 @@ ric_status cycle_equations_spectrum(cycle_equations *e, const double *x, ric_err
   return ric_multipliers_of_matrix(e->slopes, m, 0, NULL, &e->multipliers, error);
 }
 
-/* Whether the cycle has come back after so many iterates: the impacts are those of the beginning, and the y and first
- * states as well. Iterates without impacts forget nothing. */
+/* Whether the cycle repeats after so many iterates: the itinerary is that of the beginning, and the y and first
+ * states are equal. Iterates without impacts do not reduce differences. */
 static bool repeats_after(const cycle_equations *e, size_t part, const double *y, double largest) {
   size_t first = 0, second = 0;
   for (size_t k = 0; k < part; k++)
@@ -296,14 +296,14 @@ size_t cycle_equations_least_period(cycle_equations *e, const double *x) {
 
 enum { MOST_CORRECTIONS = 20 };
 
-/* A correction below it, relative to the scales, is the last: what is left of it is about its square. */
+/* A correction below it, relative to the scales, is the last one: the remaining error is about its square. */
 static const double nearly_done = 1e-9;
 
-/* Corrections that do not shrink any more below it are rounding. */
+/* Below it, corrections that do not decrease any more are rounding. */
 static const double rounding = 1e-5;
 
-/* Scales are not below these parts of the largest: of an unknown that passes 0 on the way, and one whose size does
- * not matter to the equations. */
+/* Lower bounds of scales over the largest: of an unknown that passes zero, and of one whose size does not affect the
+ * equations. */
 static const double least_part = 1e-3, least_column = 1e-12;
 
 ric_status cycle_curve_init(cycle_curve *c, cycle_equations *equations, double p, double step, ric_error *error) {
@@ -337,8 +337,8 @@ static void set_scales(const double *x, size_t count, double least, double *scal
     scale[i] = least > 0 ? fmax(fabs(x[i]), least) : 1;
 }
 
-/* States that matter to the border are of the size of d or y^2, over eta. States of one piece have one scale, since
- * coordinates may pass 0. */
+/* States that determine the border have the size of d or y^2, over eta. All states of a piece have one scale, since
+ * single coordinates may pass 0. */
 void cycle_curve_measure(cycle_curve *c, const double *x) {
   const cycle_equations *e = c->equations;
   size_t m = e->map.size, states = e->pieces * m;
@@ -374,8 +374,8 @@ double cycle_curve_product(const cycle_curve *c, const double *a, const double *
 
 /* --- linear equations --------------------------------------------------------------------------------------------- */
 
-/* The residual's derivative by the parameter, by a difference towards the inside of its range. It directs Newton's
- * method only. */
+/* The residual's derivative by the parameter, by a difference towards the inside of its range. Its error affects the
+ * convergence of Newton's method only. */
 static ric_status slope_in_parameter(cycle_curve *c, const double *x, const double *F, ric_error *error) {
   cycle_equations *e = c->equations;
   double p = x[e->unknowns], h = c->difference * c->scale[e->unknowns];
@@ -388,7 +388,7 @@ static ric_status slope_in_parameter(cycle_curve *c, const double *x, const doub
   return cycle_equations_set(e, p, error);
 }
 
-/* The matrix with its last row, the right side -F and 0. @param moves  whether the parameter does */
+/* The matrix with its last row, the right side -F and 0. @param moves  whether the parameter is variable */
 static ric_status assemble(cycle_curve *c, const double *x, const double *row, bool moves, ric_error *error) {
   cycle_equations *e = c->equations;
   size_t n = e->unknowns;
@@ -405,7 +405,8 @@ static ric_status assemble(cycle_curve *c, const double *x, const double *row, b
   return RIC_OK;
 }
 
-/* Solves for the right side, in its place. Columns and rows are scaled, so that what is small counts as much. */
+/* Solves for the right side in place. Columns and rows are scaled, so that small unknowns and equations count
+ * equally. */
 static ric_status solve_corrections(cycle_curve *c, ric_error *error) {
   for (size_t i = 0; i < c->size; i++) {
     double largest = 0, *row = gsl_matrix_ptr(c->matrix, i, 0);
@@ -415,7 +416,7 @@ static ric_status solve_corrections(cycle_curve *c, ric_error *error) {
       row[j] /= largest;
     c->right->data[i] /= largest;
   }
-  /* Not LU: GSL's takes memory, and does not look whether there is any. */
+  /* Not LU: GSL's allocates memory and does not check whether that succeeds. */
   gsl_linalg_QR_decomp(c->matrix, c->reflectors);
   bool solved = gsl_linalg_QR_svx(c->matrix, c->reflectors, c->right) == 0;
   for (size_t j = 0; j < c->size; j++) {

@@ -1,4 +1,4 @@
-/* Cycles with a fixed itinerary: their equations, and the curve that they follow along the parameter. Internal to the
+/* Cycles with a fixed itinerary: their equations, and the curve of cycles along the parameter. Internal to the
  * library. */
 #ifndef RICOCHET_CYCLE_EQUATIONS_H
 #define RICOCHET_CYCLE_EQUATIONS_H
@@ -12,12 +12,12 @@
  *
  * With y = sqrt(d - eta z) of each impact among the unknowns, all iterates are polynomials,
  *
- *   z -> L z,   or   z -> L z + y s xi + y^2 kappa   and   y^2 + eta z - d = 0,
+ *   z -> L z,    or    z -> L z + y s xi + y^2 kappa and y^2 + eta z - d = 0,
  *
  * smooth through the border, which an impact reaches at y = 0 and another iterate at eta z = d: the equations have
  * solutions on both sides. The cycle is cut into pieces, so short that L to the power of their length is not large;
- * unknowns x: the states at which the pieces begin, then the y. The derivative of the n-th iterate follows as L -
- * ((s / 2y) xi + kappa) eta of each impact. */
+ * unknowns x: the states at the beginnings of the pieces, then the y. The derivative of the n-th iterate follows as
+ * L - ((s / 2y) xi + kappa) eta of each impact. */
 
 typedef struct cycle_equations {
   const ric_map_line *line; /* borrowed */
@@ -32,70 +32,70 @@ typedef struct cycle_equations {
   ric_multipliers multipliers;
 } cycle_equations;
 
-/** Takes the itinerary from the state z [size] at the parameter p.
+/** Sets the itinerary by iterating the state z [size] at the parameter p.
  *  @returns RIC_EINVAL for the period, the line and z; RIC_ELIMIT for too many unknowns; RIC_ENOMEM; always to be
- * cleared */
+ *  cleared */
 ric_status cycle_equations_init(cycle_equations *e, const ric_map_line *line, double p, size_t period, const double *z,
                                 ric_error *error);
 void cycle_equations_clear(cycle_equations *e);
 
-/** The map at a parameter. @returns what `at` does; as ric_grazing_map_check */
+/** Sets the map of a parameter. @returns the status of the line's `at`; as ric_grazing_map_check */
 ric_status cycle_equations_set(cycle_equations *e, double p, ric_error *error);
 
-/** x [unknowns] by iterating z [size], from which the itinerary has been taken, at the parameter set last. */
+/** Sets x [unknowns] by iterating z [size], the state of the itinerary, at the parameter set last. */
 void cycle_equations_guess(cycle_equations *e, const double *z, double *x);
 
-/** F [unknowns] at x and the parameter set last, its Jacobian J [unknowns][stride] by x, which may be NULL, and of
- *  each iterate what is positive while the itinerary stands: y, or eta z - d.
- *  @param clearance  [period], may be NULL */
+/** F [unknowns] at x and the parameter set last, and its Jacobian J [unknowns][stride] by x, which may be NULL.
+ *  @param clearance  [period] of each iterate the number that is positive while the itinerary is valid: y, or eta z
+ *  - d; may be NULL */
 void cycle_equations_at(cycle_equations *e, const double *x, double *F, double *J, size_t stride, double *clearance);
 
 /** Multipliers at a solution, into `multipliers`.
  *  @returns RIC_ENUMERIC where the derivative overflows, as at y = 0 */
 ric_status cycle_equations_spectrum(cycle_equations *e, const double *x, ric_error *error);
 
-/** The first period of the cycle at a solution: `period`, or a part of it. */
+/** The least period of the cycle at a solution: `period`, or a divisor of it. */
 size_t cycle_equations_least_period(cycle_equations *e, const double *x);
 
 /* The curve of a cycle along the parameter: points (x, p) that solve its equations.
  *
- * x and p may span decades: lengths are measured by scales of the unknowns, which the caller renews from point to
- * point,
+ * x and p may range over decades: lengths are measured by scales of the unknowns, which the caller updates from
+ * point to point,
  *
  *   <a, b> = (1/N) sum_i a_i b_i / scale_i^2 + a_p b_p / scale_p^2. */
 
 typedef struct cycle_curve {
   cycle_equations *equations;  /* borrowed */
   size_t size;                 /* N + 1: unknowns and parameter */
-  double low, high;            /* the parameter is not asked for beyond them */
-  double least_scale, least_y; /* scales of the parameter and the y are not below them: both may pass 0 */
+  double low, high;            /* bounds of the parameter for evaluations */
+  double least_scale, least_y; /* lower bounds of the scales of the parameter and the y, both of which may pass 0 */
   double difference;           /* step of differences in the parameter, over its scale */
   double *scale;               /* [size] of lengths */
   double *columns;             /* [size] of the linear equations */
-  double *beside;              /* [size] residual beside the parameter */
+  double *beside;              /* [size] residual at a shifted parameter */
   gsl_matrix *matrix;          /* [size][size] */
   gsl_vector *reflectors, *right;
 } cycle_curve;
 
-/** @param step  relative to p, to which differences in it are small
+/** @param step  a length in p relative to which differences in p are small
  *  @returns RIC_ENOMEM; always to be cleared */
 ric_status cycle_curve_init(cycle_curve *c, cycle_equations *equations, double p, double step, ric_error *error);
 void cycle_curve_clear(cycle_curve *c);
 
-/** Scales from a point x [size], the map being that of its parameter. The first point is what others are compared
- *  with where they come to 0. */
+/** Sets the scales at a point x [size]; the map must be that of its parameter. The first point gives the sizes to
+ *  which numbers are compared when they pass 0. */
 void cycle_curve_measure(cycle_curve *c, const double *x);
 
 /** <a, b> */
 double cycle_curve_product(const cycle_curve *c, const double *a, const double *b);
 
-/** Newton's method with row (x - x_0) = 0 as the last equation, x_0 where x [size] sets out.
- *  @param row  [size], NULL: p stays
- *  @param moved  set to the length of the way from there; may be NULL
- *  @returns RIC_ENUMERIC where it does not converge; what the line's `at` returns */
+/** Newton's method with row (x - x_0) = 0 as the last equation, x_0 the initial x [size].
+ *  @param row  [size], NULL: p is constant
+ *  @param moved  set to the distance from x_0; may be NULL
+ *  @returns RIC_ENUMERIC where it does not converge; the status of the line's `at` */
 ric_status cycle_curve_correct(cycle_curve *c, double *x, const double *row, double *moved, ric_error *error);
 
-/** The tangent of unit length at x [size] with row tangent > 0; the map is that of x then.
+/** The tangent of unit length at x [size] with row tangent > 0; the map must be that of x.
  *  @param row  [size], NULL: the parameter grows */
 ric_status cycle_curve_tangent(cycle_curve *c, const double *x, const double *row, double *tangent, ric_error *error);
 

@@ -13,47 +13,47 @@
 
 enum { MOST_STEPS = 100000, MOST_TRIALS = 200 };
 
-/* Steps, in lengths of the curve: the largest, the smallest, and what they grow and shrink by. */
+/* Steps, in lengths of the curve: the largest, the smallest, and their factors of growth and reduction. */
 static const double longest = 0.1, shortest = 1e-11, growth = 1.5, shrink = 0.5;
 
-/* Steps are accepted where Newton's method moves their end by less than this part, and the tangent turns by less. */
+/* Steps are accepted where Newton's method changes their end by less than this part, and the tangent turns by less. */
 static const double most_moved = 0.1, most_turn = 0.3;
 
-/* A step to where multipliers are this large, from where they were inside of the circle, is made again, shorter,
- * unless it is as short as this: they may have gone more than one way. */
-static const double too_large = 2, short_enough = 1e-6;
+/* A step from multipliers inside the unit circle to multipliers this large is repeated with a shorter length, unless
+ * it is this short: several multipliers may have left the unit circle. */
+static const double too_large = 2, short_step = 1e-6;
 
-/* Zeros in one step that are nearer than this part of it have one place. */
+/* Zeros in one step that are nearer than this part of it count as one. */
 static const double same_place = 1e-9;
 
-/* What ends a window, before the borders of the iterates. The curve turns where the multiplier is 1; where a cycle is
- * born of one of half its period it goes back there as the same cycle, half a period later, and is stable on both
- * sides. */
+/* Tests that end a window; those of the borders of the iterates follow. The curve turns where a multiplier is 1.
+ * Where a cycle bifurcates from one of half its period the curve turns too: it continues as the same cycle, shifted
+ * by half a period, and is stable on both sides. */
 enum { TEST_MULTIPLIERS, TEST_TURN, TEST_ITERATES };
 
-/* A point of the curve. Its tests are positive while the cycle is admissible and stable, and on its way. */
+/* A point of the curve. Its tests are positive while the cycle is admissible and stable, and before the curve turns. */
 typedef struct cycle_point {
   double *x, *tangent; /* [N + 1] */
   double *tests;       /* [TEST_ITERATES + period] */
   double place;        /* along the tangent of the point before it */
 } cycle_point;
 
-typedef struct walk {
+typedef struct edge_search {
   cycle_equations equations;
   cycle_curve curve;
-  cycle_point from, before, here, next, trial; /* the first one of them all; on the way */
-  double *row, *block;                         /* [N + 1] <tangent, .>; the room of them all */
-  size_t tests, which;                         /* how many; the one whose zero is looked for */
+  cycle_point from, before, here, next, trial; /* the first point of the run; the points of the present step */
+  double *row, *block;                         /* [N + 1] <tangent, .>; owns all arrays */
+  size_t tests, which;                         /* number of tests; the one whose zero is searched */
   double direction;                            /* of the parameter: -1, 1 */
   gsl_root_fsolver *root;
   ric_poll poll;
   ric_status status; /* of the last trial */
   ric_error *error;
-} walk;
+} edge_search;
 
 /* --- life --------------------------------------------------------------------------------------------------------- */
 
-static ric_status allocate_walk(walk *w, ric_error *error) {
+static ric_status allocate_points(edge_search *w, ric_error *error) {
   size_t size = w->curve.size, each = 2 * size + w->tests;
   cycle_point *points[] = {&w->from, &w->before, &w->here, &w->next, &w->trial};
   w->root = gsl_root_fsolver_alloc(gsl_root_fsolver_brent);
@@ -68,36 +68,36 @@ static ric_status allocate_walk(walk *w, ric_error *error) {
   return RIC_OK;
 }
 
-static ric_status walk_init(walk *w, const ric_map_line *line, double p, size_t period, double step, const double *z,
-                            ric_error *error) {
-  *w = (walk){.tests = TEST_ITERATES + period, .error = error};
+static ric_status edge_search_init(edge_search *w, const ric_map_line *line, double p, size_t period, double step,
+                                   const double *z, ric_error *error) {
+  *w = (edge_search){.tests = TEST_ITERATES + period, .error = error};
   RIC_TRY(cycle_equations_init(&w->equations, line, p, period, z, error));
   RIC_TRY(cycle_curve_init(&w->curve, &w->equations, p, step, error));
-  return allocate_walk(w, error);
+  return allocate_points(w, error);
 }
 
-static void walk_clear(walk *w) {
+static void edge_search_clear(edge_search *w) {
   gsl_root_fsolver_free(w->root);
   free(w->block);
   cycle_curve_clear(&w->curve);
   cycle_equations_clear(&w->equations);
 }
 
-static void copy(const walk *w, cycle_point *to, const cycle_point *from) {
+static void copy(const edge_search *w, cycle_point *to, const cycle_point *from) {
   memcpy(to->x, from->x, w->curve.size * sizeof *to->x);
   memcpy(to->tangent, from->tangent, w->curve.size * sizeof *to->x);
   memcpy(to->tests, from->tests, w->tests * sizeof *to->x);
   to->place = from->place;
 }
 
-static double parameter_of(const walk *w, const cycle_point *a) {
+static double parameter_of(const edge_search *w, const cycle_point *a) {
   return a->x[w->curve.size - 1];
 }
 
 /* --- the tests ---------------------------------------------------------------------------------------------------- */
 
-/* At a solution with its tangent, the map being that of its parameter. Multipliers are infinite at y = 0. */
-static ric_status evaluate_point(walk *w, cycle_point *a, ric_error *error) {
+/* Tests of a solution with its tangent; the map must be that of its parameter. Multipliers are infinite at y = 0. */
+static ric_status evaluate_point(edge_search *w, cycle_point *a, ric_error *error) {
   cycle_equations_at(&w->equations, a->x, w->curve.beside, NULL, 0, a->tests + TEST_ITERATES);
   ric_status status = cycle_equations_spectrum(&w->equations, a->x, error);
   double largest = w->equations.multipliers.largest;
@@ -110,7 +110,7 @@ static ric_status evaluate_point(walk *w, cycle_point *a, ric_error *error) {
 
 /* --- the cycle at a parameter ------------------------------------------------------------------------------------- */
 
-static ric_status check_found(walk *w, const cycle_point *a, ric_error *error) {
+static ric_status check_found(edge_search *w, const cycle_point *a, ric_error *error) {
   const cycle_equations *e = &w->equations;
   for (size_t k = 0; k < e->period; k++) {
     double clearance = a->tests[TEST_ITERATES + k];
@@ -125,7 +125,7 @@ static ric_status check_found(walk *w, const cycle_point *a, ric_error *error) {
   return RIC_OK;
 }
 
-static ric_status start(walk *w, double p, double *z, ric_cycle_window *window, ric_error *error) {
+static ric_status start(edge_search *w, double p, double *z, ric_cycle_window *window, ric_error *error) {
   cycle_point *a = &w->here;
   cycle_equations_guess(&w->equations, z, a->x);
   a->x[w->curve.size - 1] = p;
@@ -145,20 +145,20 @@ static ric_status start(walk *w, double p, double *z, ric_cycle_window *window, 
 
 ric_status ric_cycle_find(const ric_map_line *line, double p, size_t period, double *z, ric_cycle_window *window,
                           ric_error *error) {
-  walk w;
+  edge_search w;
   gsl_error_handler_t *handler = gsl_set_error_handler_off();
-  ric_status status = walk_init(&w, line, p, period, 1, z, error);
+  ric_status status = edge_search_init(&w, line, p, period, 1, z, error);
   if (status == RIC_OK)
     status = start(&w, p, z, window, error);
-  walk_clear(&w);
+  edge_search_clear(&w);
   gsl_set_error_handler(handler);
   return status;
 }
 
 /* --- a step ------------------------------------------------------------------------------------------------------- */
 
-/* The next point `length` ahead, or, where that is beyond it, at the bound. */
-static ric_status step_to(walk *w, double length, double bound, bool *good, ric_error *error) {
+/* The next point `length` ahead, or at the bound if that is nearer. */
+static ric_status step_to(edge_search *w, double length, double bound, bool *good, ric_error *error) {
   cycle_curve *c = &w->curve;
   const size_t last = c->size - 1;
   const double rate = w->here.tangent[last], left = (bound - w->here.x[last]) / rate;
@@ -185,15 +185,15 @@ static bool is_past(const cycle_point *a, size_t test) {
   return !(a->tests[test] > 0);
 }
 
-static bool ends_window(const walk *w, const cycle_point *a) {
+static bool ends_window(const edge_search *w, const cycle_point *a) {
   for (size_t k = 0; k < w->tests; k++)
     if (is_past(a, k))
       return true;
   return false;
 }
 
-/* Where the parabola through three values of a test has a minimum below 0 in (0, next); 0: nowhere. */
-static double dip_of(double before, double next, const double *values) {
+/* The place of a minimum below 0 in (0, next) of the parabola through three values of a test; 0: none. */
+static double parabola_minimum(double before, double next, const double *values) {
   const double left = (values[1] - values[0]) / -before, right = (values[2] - values[1]) / next;
   const double curvature = (right - left) / (next - before), slope = left - curvature * before;
   const double place = -slope / (2 * curvature);
@@ -202,32 +202,32 @@ static double dip_of(double before, double next, const double *values) {
   return values[1] + slope * place / 2 < 0 ? place : 0;
 }
 
-/* A place in the step at which a test may have been below 0 and back, the first one. 0: none. */
-static double find_dip(const walk *w) {
+/* The first place in the step at which a test may be negative between two positive values; 0: none. */
+static double find_hidden_minimum(const edge_search *w) {
   double first = 0;
   for (size_t k = 0; k < w->tests && w->before.place < 0; k++) {
     const double values[] = {w->before.tests[k], w->here.tests[k], w->next.tests[k]};
-    const double place = dip_of(w->before.place, w->next.place, values);
+    const double place = parabola_minimum(w->before.place, w->next.place, values);
     if (place > 0 && (first == 0 || place < first))
       first = place;
   }
   return first;
 }
 
-/* How long the step should be that has just been made: as it was, or shorter. */
-static double wanted(const walk *w, double length, bool good) {
+/* The length that the last step should have had: its own, or a shorter one. */
+static double preferred_length(const edge_search *w, double length, bool good) {
   if (!good)
     return shrink * length;
-  if (length <= short_enough)
+  if (length <= short_step)
     return length;
   if (w->next.tests[TEST_MULTIPLIERS] < (1 - too_large) / (1 + too_large))
     return shrink * length;
-  const double dip = ends_window(w, &w->next) ? 0 : find_dip(w);
-  return dip > 0 ? fmin(fmax(dip, 0.1 * length), shrink * length) : length;
+  const double minimum = ends_window(w, &w->next) ? 0 : find_hidden_minimum(w);
+  return minimum > 0 ? fmin(fmax(minimum, 0.1 * length), shrink * length) : length;
 }
 
-/* Makes a step, and sets the length of the next. */
-static ric_status step_window(walk *w, double *length, double bound, ric_error *error) {
+/* Makes a step, and sets the length of the next one. */
+static ric_status step_window(edge_search *w, double *length, double bound, ric_error *error) {
   for (;;) {
     bool good = false;
     if (ric_poll_stops(w->poll))
@@ -235,7 +235,7 @@ static ric_status step_window(walk *w, double *length, double bound, ric_error *
     ric_status status = step_to(w, *length, bound, &good, error);
     if (status != RIC_OK && status != RIC_ENUMERIC && status != RIC_EINVAL)
       return status;
-    const double better = wanted(w, *length, status == RIC_OK && good);
+    const double better = preferred_length(w, *length, status == RIC_OK && good);
     if (better == *length) {
       *length = fmin(growth * *length, longest);
       return RIC_OK;
@@ -249,7 +249,7 @@ static ric_status step_window(walk *w, double *length, double bound, ric_error *
 /* --- edges -------------------------------------------------------------------------------------------------------- */
 
 /* The point at a place between `here` and `next`. */
-static ric_status try_place(walk *w, double place) {
+static ric_status evaluate_place(edge_search *w, double place) {
   const double part = place / w->next.place;
   for (size_t i = 0; i < w->curve.size; i++)
     w->trial.x[i] = w->here.x[i] + part * (w->next.x[i] - w->here.x[i]);
@@ -260,16 +260,16 @@ static ric_status try_place(walk *w, double place) {
 }
 
 static double test_at(double place, void *user) {
-  walk *w = user;
-  w->status = try_place(w, place);
+  edge_search *w = user;
+  w->status = evaluate_place(w, place);
   return w->status == RIC_OK ? w->trial.tests[w->which] : NAN;
 }
 
-/* The zero of one test up to a place at which it is not positive any more; the trial is set to it. */
-static ric_status find_zero(walk *w, double to) {
+/* The zero of one test up to a place at which it is not positive; sets the trial point to it. */
+static ric_status find_zero(edge_search *w, double to) {
   gsl_function f = {test_at, w};
   double root = to;
-  if (!(test_at(0, w) > 0) || test_at(to, w) > 0) /* they differ in rounding */
+  if (!(test_at(0, w) > 0) || test_at(to, w) > 0) /* their signs differ by rounding only */
     return w->status;
   int code = gsl_root_fsolver_set(w->root, &f, 0, to);
   for (int k = 0; k < MOST_TRIALS && code == GSL_SUCCESS; k++) {
@@ -283,16 +283,16 @@ static ric_status find_zero(walk *w, double to) {
   if (code != GSL_SUCCESS)
     return ric_fail(w->error, RIC_ENUMERIC, "the edge near p = %.17g is not found: %s", parameter_of(w, &w->trial),
                     gsl_strerror(code));
-  return try_place(w, root);
+  return evaluate_place(w, root);
 }
 
 static ric_grazing_edge_kind kind_of(ric_complex mu) {
   return mu.im != 0 ? RIC_EDGE_COMPLEX : mu.re > 0 ? RIC_EDGE_FOLD : RIC_EDGE_FLIP;
 }
 
-/* Whether a test has a zero in the step before the trial, which is set to it then: one that is positive there has
- * not, and zeros of one place have the name of the first. */
-static ric_status look_before(walk *w, size_t test, size_t *first, bool *found) {
+/* Whether a test has a zero in the step before the trial point, to which it then sets the trial point. A test that
+ * is positive at the trial point has none; of zeros that count as one the first is kept. */
+static ric_status find_zero_before(edge_search *w, size_t test, size_t *first, bool *found) {
   const double to = w->trial.place;
   *found = false;
   if (test == *first || !is_past(&w->trial, test))
@@ -305,16 +305,16 @@ static ric_status look_before(walk *w, size_t test, size_t *first, bool *found) 
   return RIC_OK;
 }
 
-/* The first zero of all tests in the step. Tests may be positive at both ends of the step and not in between, as
- * those of the multipliers beside y = 0: each time one is found all are looked at again. */
-static ric_status find_first(walk *w, ric_cycle_edge *edge) {
+/* The first zero of all tests in the step. Tests may be positive at both ends of the step and negative in between,
+ * as those of the multipliers near y = 0: after each zero all tests are repeated. */
+static ric_status find_first(edge_search *w, ric_cycle_edge *edge) {
   size_t first = SIZE_MAX;
   bool found = true;
   copy(w, &w->trial, &w->next);
   for (size_t pass = 0; pass < w->tests && found; pass++) {
     found = false;
     for (size_t k = 0; k < w->tests && !found; k++) /* borders before multipliers */
-      RIC_TRY(look_before(w, (k + TEST_ITERATES) % w->tests, &first, &found));
+      RIC_TRY(find_zero_before(w, (k + TEST_ITERATES) % w->tests, &first, &found));
   }
   edge->p = parameter_of(w, &w->trial);
   edge->iterate = first >= TEST_ITERATES ? first - TEST_ITERATES : 0;
@@ -325,7 +325,7 @@ static ric_status find_first(walk *w, ric_cycle_edge *edge) {
 }
 
 /* The next point becomes the present one. */
-static void accept(walk *w) {
+static void accept(edge_search *w) {
   cycle_curve *c = &w->curve;
   copy(w, &w->before, &w->here);
   copy(w, &w->here, &w->next);
@@ -339,8 +339,8 @@ static void accept(walk *w) {
     w->before.place += w->row[i] * (w->before.x[i] - w->here.x[i]);
 }
 
-/* From `here` to the edge on the way to a bound. */
-static ric_status find_edge(walk *w, double bound, double step_in_p, ric_cycle_edge *edge, ric_error *error) {
+/* Follows the curve from `here` to the edge in the direction of a bound. */
+static ric_status find_edge(edge_search *w, double bound, double step_in_p, ric_cycle_edge *edge, ric_error *error) {
   cycle_curve *c = &w->curve;
   const size_t last = c->size - 1;
   RIC_TRY(cycle_equations_set(&w->equations, w->here.x[last], error));
@@ -368,8 +368,8 @@ static ric_status find_edge(walk *w, double bound, double step_in_p, ric_cycle_e
 
 /* --- the window --------------------------------------------------------------------------------------------------- */
 
-static ric_status find_window(walk *w, double low, double high, double step_in_p, double *z, ric_cycle_window *window,
-                              ric_error *error) {
+static ric_status find_window(edge_search *w, double low, double high, double step_in_p, double *z,
+                              ric_cycle_window *window, ric_error *error) {
   ric_cycle_window found;
   const double p = w->equations.parameter;
   RIC_TRY(start(w, p, z, &found, error));
@@ -388,7 +388,7 @@ static ric_status find_window(walk *w, double low, double high, double step_in_p
 
 ric_status ric_cycle_window_find(const ric_map_line *line, double p, size_t period, double low, double high,
                                  double step, double *z, ric_poll poll, ric_cycle_window *window, ric_error *error) {
-  walk w;
+  edge_search w;
   ric_error own;
   if (!(low < p))
     return ric_fail(error, RIC_EINVAL, "low = %.9g, expected less than p = %.9g", low, p);
@@ -398,11 +398,11 @@ ric_status ric_cycle_window_find(const ric_map_line *line, double p, size_t peri
     return ric_fail(error, RIC_EINVAL, "step = %g, expected a finite number >= 0", step);
   const double first = step > 0 ? step : 1e-3;
   gsl_error_handler_t *handler = gsl_set_error_handler_off();
-  ric_status status = walk_init(&w, line, p, period, first, z, error ? error : &own);
+  ric_status status = edge_search_init(&w, line, p, period, first, z, error ? error : &own);
   w.poll = poll;
   if (status == RIC_OK)
     status = find_window(&w, low, high, first * (p != 0 ? fabs(p) : 1), z, window, error);
-  walk_clear(&w);
+  edge_search_clear(&w);
   gsl_set_error_handler(handler);
   return status;
 }

@@ -13,14 +13,14 @@
 #include "numeric/number_block.h"
 
 enum {
-  PIECE = 16,  /* iterates at a time: their states stay near the processor */
-  LOOK = 64,   /* iterates between two looks at the bound */
-  CYCLE = 64,  /* longest cycle that is looked for to the bit */
-  REVIEW = 512 /* iterates from one such look to the next */
+  PIECE_LENGTH = 16,    /* iterates at a time: their states stay in the cache */
+  CHECK_INTERVAL = 64,  /* iterates between two checks of the bound */
+  LONGEST_CYCLE = 64,   /* longest cycle that is searched for, with states equal in every bit */
+  SEARCH_INTERVAL = 512 /* iterates between two such searches */
 };
 
 static const double rounding = 1e-12;   /* of states that return, relative to the largest number */
-static const size_t align_time = 256;   /* iterates before those measured in which tangent vectors find their places */
+static const size_t align_time = 256;   /* iterates before the measured ones in which tangent vectors align */
 static const size_t poll_work = 100000; /* products between two polls: well below a millisecond */
 
 struct ric_map_runner {
@@ -28,22 +28,22 @@ struct ric_map_runner {
   map_kernel kernel;
   map_block block;
   size_t piece;
-  double *numbers;    /* holds: */
-  double *trace;      /* [longest + 1][size][width] states, of which the first is the present one */
-  double *sound;      /* [size][width] at the last look */
-  double *measured;   /* [size][width] after the iterates measured */
-  double *impacts;    /* [width] counted at the last look, or after the iterates measured */
-  double *length;     /* [exponents][width] logarithms of the lengths when measuring began */
-  double *orbit;      /* [2 period_limit + 1][size] of one map */
-  double *directions; /* [exponents][size] in which tangent vectors set out */
-  size_t *cycle;      /* [width] how long it is, to the bit */
-  bool *lost;         /* [width] diverged */
-  /* of a block on its way: */
+  double *numbers;        /* owns: */
+  double *trace;          /* [longest + 1][size][width] states, of which the first is the present one */
+  double *checked_states; /* [size][width] at the last check */
+  double *measured;       /* [size][width] after the iterates measured */
+  double *impacts;        /* [width] counted at the last check, or after the iterates measured */
+  double *length;         /* [exponents][width] logarithms of the lengths at the start of measuring */
+  double *orbit;          /* [2 period_limit + 1][size] of one map */
+  double *directions;     /* [exponents][size] initial tangent vectors */
+  size_t *cycle;          /* [width] length of the cycle */
+  bool *diverged;         /* [width] diverged */
+  /* of the present block: */
   ric_attractor *attractors;
-  size_t count, left;  /* how many; have not diverged */
-  size_t done, looked; /* iterates; at the last look */
-  size_t counted;      /* iterates over which `impacts` are */
-  size_t work;         /* since the last poll */
+  size_t count, left;   /* maps; those that have not diverged */
+  size_t done, checked; /* iterates; at the last check */
+  size_t counted;       /* iterates over which `impacts` are counted */
+  size_t work;          /* since the last poll */
 };
 
 /* --- life --------------------------------------------------------------------------------------------------------- */
@@ -63,16 +63,16 @@ static ric_status allocate_runner(ric_map_runner *r, size_t size, ric_error *err
   const ric_attractor_options *o = &r->options;
   size_t width = r->kernel.width, state = size * width, longest = 2 * o->period_limit;
   RIC_TRY(map_block_init(&r->block, size, width, o->exponents, error));
-  if (longest < CYCLE)
-    longest = CYCLE;
+  if (longest < LONGEST_CYCLE)
+    longest = LONGEST_CYCLE;
   size_t numbers = (longest + 3) * state + (1 + o->exponents) * width + (longest + 1 + o->exponents) * size;
   double *store = r->numbers = aligned_alloc(64, (numbers * sizeof *store / 64 + 1) * 64);
-  r->lost = calloc(width, sizeof *r->lost);
+  r->diverged = calloc(width, sizeof *r->diverged);
   r->cycle = calloc(width, sizeof *r->cycle);
-  if (!store || !r->lost || !r->cycle)
+  if (!store || !r->diverged || !r->cycle)
     return ric_fail(error, RIC_ENOMEM, "no memory for %zu iterates of %zu maps of size %zu", longest, width, size);
   r->trace = number_store_take(&store, (longest + 1) * state);
-  r->sound = number_store_take(&store, state);
+  r->checked_states = number_store_take(&store, state);
   r->measured = number_store_take(&store, state);
   r->impacts = number_store_take(&store, width);
   r->length = number_store_take(&store, o->exponents * width);
@@ -81,7 +81,7 @@ static ric_status allocate_runner(ric_map_runner *r, size_t size, ric_error *err
   return RIC_OK;
 }
 
-/* In which tangent vectors set out, one vector after another. */
+/* Initial tangent vectors, one after another. */
 static ric_status set_directions(ric_map_runner *r, ric_error *error) {
   size_t size = r->block.size, count = r->options.exponents;
   orthonormal_work work = {0};
@@ -109,14 +109,14 @@ ric_status ric_map_runner_create(size_t size, const ric_attractor_options *optio
     return ric_fail(error, RIC_EINVAL, "size = 0, expected at least 1");
   RIC_TRY(ric_attractor_options_check(&o, size, error));
   if (!ric_map_lanes_available(lanes))
-    return ric_fail(error, RIC_EINVAL, "lanes = %s, which this processor has not", ric_map_lanes_name(lanes));
+    return ric_fail(error, RIC_EINVAL, "lanes = %s, which this processor does not have", ric_map_lanes_name(lanes));
   ric_map_runner *r = calloc(1, sizeof *r);
   if (!r)
     return ric_fail(error, RIC_ENOMEM, "no memory for a runner of maps");
   r->options = o;
   r->kernel = map_kernel_of(lanes);
-  size_t fit = 4096 / (size * (1 + o.exponents)) / size; /* a piece is not long, that the poll is asked in time */
-  r->piece = fit < 1 ? 1 : fit < PIECE ? fit : PIECE;
+  size_t fit = 4096 / (size * (1 + o.exponents)) / size; /* short pieces: the poll is called in time */
+  r->piece = fit < 1 ? 1 : fit < PIECE_LENGTH ? fit : PIECE_LENGTH;
   gsl_error_handler_t *handler = gsl_set_error_handler_off();
   ric_status status = allocate_runner(r, size, error);
   if (status == RIC_OK)
@@ -133,22 +133,22 @@ void ric_map_runner_destroy(ric_map_runner **runner) {
     return;
   map_block_clear(&(*runner)->block);
   free((*runner)->numbers);
-  free((*runner)->lost);
+  free((*runner)->diverged);
   free((*runner)->cycle);
   free(*runner);
   *runner = NULL;
 }
 
-/* --- what is seen of a block -------------------------------------------------------------------------------------- */
+/* --- states and values of a block --------------------------------------------------------------------------------- */
 
-/* Minus zero, of which no result tells whether a product of zero was left out, becomes zero. */
-static double plain(double x) {
+/* Changes minus zero to zero: its sign may depend on whether a product of zero is omitted, and no result may. */
+static double normalise_zero(double x) {
   return x + 0.0;
 }
 
 static void copy_lane(const ric_map_runner *r, const double *state, size_t lane, double *z) {
   for (size_t i = 0; i < r->block.size; i++)
-    z[i] = plain(state[i * r->block.width + lane]);
+    z[i] = normalise_zero(state[i * r->block.width + lane]);
 }
 
 /* Stores iterates done + 1 ... done + count. */
@@ -156,18 +156,18 @@ static void store(const ric_map_runner *r, const double *first, size_t count) {
   size_t size = r->block.size, width = r->block.width, from = r->done - r->options.transient;
   for (size_t l = 0; l < r->count; l++) {
     const ric_attractor *a = &r->attractors[l];
-    for (size_t k = 0; k < count && !r->lost[l]; k++) {
+    for (size_t k = 0; k < count && !r->diverged[l]; k++) {
       const double *state = first + k * size * width;
       if (a->values)
-        a->values[from + k] = plain(state[r->options.observe * width + l]);
+        a->values[from + k] = normalise_zero(state[r->options.observe * width + l]);
       if (a->states)
         copy_lane(r, state, l, a->states + (from + k) * size);
     }
   }
 }
 
-/* Nothing is known of what was stored from iterate `first` + 1 on. */
-static void unstore(const ric_map_runner *r, ric_attractor *a, size_t first) {
+/* Marks the values stored from iterate `first` + 1 on as unknown. */
+static void erase(const ric_map_runner *r, ric_attractor *a, size_t first) {
   size_t size = r->block.size, transient = r->options.transient;
   for (size_t k = first > transient ? first - transient : 0; k < r->options.keep; k++) {
     if (a->values)
@@ -177,10 +177,10 @@ static void unstore(const ric_map_runner *r, ric_attractor *a, size_t first) {
   }
 }
 
-/* A value has diverged: the state of its lane is put where nothing happens any more. */
-static void lose(ric_map_runner *r, double *state, size_t lane) {
+/* A map has diverged: its lane gets a state that stays zero. */
+static void set_diverged(ric_map_runner *r, double *state, size_t lane) {
   size_t size = r->block.size, width = r->block.width;
-  r->lost[lane] = true;
+  r->diverged[lane] = true;
   r->block.d[lane] = -1;
   for (size_t i = 0; i < size; i++)
     state[i * width + lane] = 0;
@@ -188,8 +188,8 @@ static void lose(ric_map_runner *r, double *state, size_t lane) {
     return;
   r->left--;
   ric_attractor *a = &r->attractors[lane];
-  copy_lane(r, r->sound, lane, a->z);
-  unstore(r, a, r->looked);
+  copy_lane(r, r->checked_states, lane, a->z);
+  erase(r, a, r->checked);
   for (size_t k = 0; k < r->options.exponents && a->exponents; k++)
     a->exponents[k] = NAN;
   for (size_t i = 0; i < size && a->lowest; i++)
@@ -198,8 +198,7 @@ static void lose(ric_map_runner *r, double *state, size_t lane) {
   a->period = 0;
   a->impacts = r->counted > 0 ? r->impacts[lane] / (double)r->counted : NAN;
   a->iterates = r->done;
-  snprintf(a->reason, sizeof a->reason, "a number of the state came beyond %g by iterate %zu", r->options.bound,
-           r->done);
+  snprintf(a->reason, sizeof a->reason, "a number of the state exceeded %g by iterate %zu", r->options.bound, r->done);
 }
 
 static bool all_within(const double *numbers, size_t count, double bound) {
@@ -216,29 +215,29 @@ static bool lane_within(const ric_map_runner *r, const double *state, size_t lan
   return true;
 }
 
-/* Looks whether maps have diverged. */
+/* Finds maps that have diverged. */
 static void find_diverged(ric_map_runner *r, double *state) {
   size_t width = r->block.width, numbers = r->block.size * width, first = r->options.transient;
   if (!all_within(state, numbers, r->options.bound))
     for (size_t l = 0; l < width; l++)
       if (!lane_within(r, state, l))
-        lose(r, state, l);
-  memcpy(r->sound, state, numbers * sizeof *state);
-  r->looked = r->done;
+        set_diverged(r, state, l);
+  memcpy(r->checked_states, state, numbers * sizeof *state);
+  r->checked = r->done;
   if (r->done > first && r->done - first <= r->options.measure) {
     memcpy(r->impacts, r->block.impacts, width * sizeof *r->impacts);
     r->counted = r->done - first;
   }
 }
 
-/* --- the course of a block ---------------------------------------------------------------------------------------- */
+/* --- iterating a block -------------------------------------------------------------------------------------------- */
 
 static size_t least(size_t a, size_t b) {
   return a < b ? a : b;
 }
 
-/* Goes on from a state in the trace, at most to the next look. @returns RIC_ESTOPPED */
-static ric_status run_on(ric_map_runner *r, double *state, size_t count, ric_error *error) {
+/* Iterates from a state in the trace, at most to the next check. @returns RIC_ESTOPPED */
+static ric_status iterate(ric_map_runner *r, double *state, size_t count, ric_error *error) {
   size_t size = r->block.size;
   r->kernel.advance(&r->block, state, count);
   r->work += count * size * r->block.width * (size + 1) * (1 + r->block.vectors);
@@ -248,43 +247,43 @@ static ric_status run_on(ric_map_runner *r, double *state, size_t count, ric_err
   return ric_poll_stops(r->options.poll) ? ric_fail(error, RIC_ESTOPPED, "stopped by the poll callback") : RIC_OK;
 }
 
-/* Iterates, the last state being the first of the trace again. @param keeps  stores them */
+/* Iterates; afterwards the last state is the first one of the trace. @param keeps  stores the iterates */
 static ric_status advance_maps(ric_map_runner *r, size_t until, bool keeps, ric_error *error) {
   size_t state = r->block.size * r->block.width;
   while (r->done < until && r->left > 0) {
-    size_t count = least(least(r->piece, until - r->done), LOOK - r->done % LOOK);
+    size_t count = least(least(r->piece, until - r->done), CHECK_INTERVAL - r->done % CHECK_INTERVAL);
     double *last = r->trace + count * state;
-    RIC_TRY(run_on(r, r->trace, count, error));
+    RIC_TRY(iterate(r, r->trace, count, error));
     if (keeps)
       store(r, r->trace + state, count);
     r->done += count;
-    if (r->done % LOOK == 0 || r->done == until)
+    if (r->done % CHECK_INTERVAL == 0 || r->done == until)
       find_diverged(r, last);
     memcpy(r->trace, last, state * sizeof *last);
   }
   return RIC_OK;
 }
 
-/* As many as leave their states in the trace. */
-static ric_status record(ric_map_runner *r, size_t count, ric_error *error) {
+/* Iterates at most as often as the trace has room, and leaves all states in the trace. */
+static ric_status trace_maps(ric_map_runner *r, size_t count, ric_error *error) {
   size_t state = r->block.size * r->block.width;
   double *at = r->trace;
   for (size_t until = r->done + count; r->done < until && r->left > 0;) {
-    size_t next = least(least(r->piece, until - r->done), LOOK - r->done % LOOK);
-    RIC_TRY(run_on(r, at, next, error));
+    size_t next = least(least(r->piece, until - r->done), CHECK_INTERVAL - r->done % CHECK_INTERVAL);
+    RIC_TRY(iterate(r, at, next, error));
     r->done += next;
     at += next * state;
-    if (r->done % LOOK == 0 || r->done == until)
+    if (r->done % CHECK_INTERVAL == 0 || r->done == until)
       find_diverged(r, at);
   }
   return RIC_OK;
 }
 
-/* After how many iterates a lane is exactly where it was when the trace began; 0: it is not so within it, or beyond the
- * bound on the way, which would be seen. */
+/* The number of iterates after which a lane has exactly the state at the start of the trace; 0: more than
+ * LONGEST_CYCLE, or a state beyond the bound in between, which a check would find. */
 static size_t cycle_of_lane(const ric_map_runner *r, size_t lane) {
   size_t size = r->block.size, width = r->block.width;
-  for (size_t k = 1; k <= CYCLE; k++) {
+  for (size_t k = 1; k <= LONGEST_CYCLE; k++) {
     const double *state = r->trace + k * size * width;
     size_t same = 0;
     while (same < size && state[same * width + lane] == r->trace[same * width + lane])
@@ -297,10 +296,10 @@ static size_t cycle_of_lane(const ric_map_runner *r, size_t lane) {
   return 0;
 }
 
-/* Where all maps of a block have come to cycles, to the bit, what follows is known until iterate `until`: there they
- * are then. */
-static bool skip(ric_map_runner *r, size_t until) {
-  size_t size = r->block.size, width = r->block.width, ahead = until - r->done + CYCLE;
+/* Where all maps of a block are on cycles, equal in every bit, their states at iterate `until` are known: skips to
+ * it. */
+static bool skip_cycles(ric_map_runner *r, size_t until) {
+  size_t size = r->block.size, width = r->block.width, ahead = until - r->done + LONGEST_CYCLE;
   for (size_t l = 0; l < width; l++)
     if ((r->cycle[l] = cycle_of_lane(r, l)) == 0)
       return false;
@@ -312,18 +311,18 @@ static bool skip(ric_map_runner *r, size_t until) {
   return true;
 }
 
-/* The iterates of which nothing is wanted but where they lead. */
-static ric_status settle(ric_map_runner *r, size_t until, ric_error *error) {
+/* Iterates without results: only the last state counts. */
+static ric_status run_transient(ric_map_runner *r, size_t until, ric_error *error) {
   size_t state = r->block.size * r->block.width;
   while (r->done < until && r->left > 0) {
-    RIC_TRY(advance_maps(r, least(until, r->done + REVIEW - CYCLE), false, error));
-    if (until - r->done < REVIEW)
+    RIC_TRY(advance_maps(r, least(until, r->done + SEARCH_INTERVAL - LONGEST_CYCLE), false, error));
+    if (until - r->done < SEARCH_INTERVAL)
       return advance_maps(r, until, false, error);
     size_t left = r->left;
-    RIC_TRY(record(r, CYCLE, error));
-    if (r->left == left && skip(r, until))
+    RIC_TRY(trace_maps(r, LONGEST_CYCLE, error));
+    if (r->left == left && skip_cycles(r, until))
       return RIC_OK;
-    memcpy(r->trace, r->trace + CYCLE * state, state * sizeof *r->trace);
+    memcpy(r->trace, r->trace + LONGEST_CYCLE * state, state * sizeof *r->trace);
   }
   return RIC_OK;
 }
@@ -342,7 +341,7 @@ static void begin_measuring(ric_map_runner *r) {
   }
 }
 
-/* A vector that has been put out is zero, one that came to the border not finite. */
+/* A vector of length zero was removed, one whose length is not finite reached the border. */
 static void set_exponents(const ric_map_runner *r, size_t lane, double *exponents) {
   for (size_t k = 0; k < r->block.vectors; k++) {
     double norm = r->block.norm[k * r->block.width + lane];
@@ -354,13 +353,13 @@ static void set_exponents(const ric_map_runner *r, size_t lane, double *exponent
 static void end_measuring(ric_map_runner *r) {
   memcpy(r->measured, r->trace, r->block.size * r->block.width * sizeof *r->trace);
   for (size_t l = 0; l < r->count; l++)
-    if (!r->lost[l] && r->attractors[l].exponents)
+    if (!r->diverged[l] && r->attractors[l].exponents)
       set_exponents(r, l, r->attractors[l].exponents);
   r->block.vectors = 0;
 }
 
-/* A map that has come to the end of its run. */
-static void finish(ric_map_runner *r, size_t lane) {
+/* Results of a map at the end of its run. */
+static void set_results(ric_map_runner *r, size_t lane) {
   const ric_attractor_options *o = &r->options;
   size_t size = r->block.size;
   ric_attractor *a = &r->attractors[lane];
@@ -383,30 +382,30 @@ static void begin_run(ric_map_runner *r, const ric_grazing_map *const *maps, con
   map_block_load(&r->block, maps, d, count);
   r->attractors = attractors;
   r->count = r->left = count;
-  r->done = r->looked = r->counted = 0;
+  r->done = r->checked = r->counted = 0;
   for (size_t l = 0; l < width; l++) {
-    r->lost[l] = false;
+    r->diverged[l] = false;
     r->block.impacts[l] = 0;
     for (size_t i = 0; i < r->block.size; i++)
       r->trace[i * width + l] = attractors[l < count ? l : count - 1].z[i];
   }
-  memcpy(r->sound, r->trace, r->block.size * width * sizeof *r->trace);
+  memcpy(r->checked_states, r->trace, r->block.size * width * sizeof *r->trace);
 }
 
 static ric_status run_block(ric_map_runner *r, ric_error *error) {
   const ric_attractor_options *o = &r->options;
   size_t aligning = o->exponents > 0 ? least(o->transient, align_time) : 0;
-  RIC_TRY(settle(r, o->transient - aligning, error));
+  RIC_TRY(run_transient(r, o->transient - aligning, error));
   map_block_carry(&r->block, r->directions, o->exponents);
   RIC_TRY(advance_maps(r, o->transient, false, error));
   begin_measuring(r);
   RIC_TRY(advance_maps(r, o->transient + o->keep, true, error));
   RIC_TRY(advance_maps(r, o->transient + o->measure, false, error));
   end_measuring(r);
-  RIC_TRY(record(r, 2 * o->period_limit, error));
+  RIC_TRY(trace_maps(r, 2 * o->period_limit, error));
   for (size_t l = 0; l < r->count; l++)
-    if (!r->lost[l])
-      finish(r, l);
+    if (!r->diverged[l])
+      set_results(r, l);
   return RIC_OK;
 }
 
@@ -439,7 +438,7 @@ ric_status ric_map_runner_run(ric_map_runner *r, size_t count, const ric_grazing
 
 /* --- the fastest variant ------------------------------------------------------------------------------------------ */
 
-/* A trial: so many values, iterates of each, and runs of which the shortest counts. */
+/* A trial: numbers of values, of iterates of each, and of runs, the shortest of which counts. */
 enum { TRIAL_VALUES = 64, TRIAL_ITERATES = 400, TRIAL_RUNS = 3 };
 
 typedef struct trial {
@@ -453,7 +452,7 @@ typedef struct trial {
   void *user;
 } trial;
 
-/* A map with windows and chaos, all of whose coefficients count. */
+/* A map with windows and chaos, without zero coefficients. */
 static ric_status make_trial_map(ric_grazing_map *map, size_t size) {
   RIC_TRY(ric_grazing_map_init(map, size, NULL));
   for (size_t i = 0; i < size; i++) {
@@ -476,7 +475,7 @@ static void reset_trial(trial *t) {
   }
 }
 
-/* The shortest of several runs; INFINITY where there is none. */
+/* The shortest time of several runs; INFINITY without one. */
 static double time_lanes(trial *t, ric_map_lanes lanes) {
   ric_map_runner *runner = NULL;
   double best = INFINITY;

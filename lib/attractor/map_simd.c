@@ -81,17 +81,18 @@ void map_block_carry(map_block *b, const double *directions, size_t vectors) {
   }
 }
 
-enum { SHORTEN = 4 }; /* iterates between two looks at the lengths of tangent vectors: they change by 1e38 in each */
+enum { SHORTEN = 4 }; /* iterates between two scalings of tangent vectors, whose lengths may change by 1e38 in each */
 enum { GROUPS_FOUR = 4, GROUPS_EIGHT = 4 };
 
-/* Loops of few rounds, and branches that always go the same way within them, are to be none. */
+/* Unrolls short loops, so that branches on the loop variable disappear. */
 #if defined(__GNUC__) && !defined(__clang__)
 #define FEW _Pragma("GCC unroll 8")
 #else
 #define FEW
 #endif
 
-static const double put_out = 1e-26; /* what is left of a vector, over it, that counts as rounding: of squares */
+static const double put_out =
+    1e-26; /* a smaller remainder of a vector, over the vector, is rounding: ratio of squares */
 
 #define LANE   double
 #define LANES  1

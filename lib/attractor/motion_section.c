@@ -1,4 +1,4 @@
-/* The attractor of a motion on a section: its crossings, some at a time, and the run over them. */
+/* The attractor of a motion on a section: its crossings, in blocks, and the run over them. */
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -11,21 +11,21 @@
 #include "numeric/constants.h"
 #include "ricochet/motion_section.h"
 
-/* Crossings of a motion with a section, some at a time.
+/* Crossings of a motion with a section, in blocks.
  *
- * Stroboscopic states are read off the segments of the motion, so that steps go on across them; impacts come from the
- * events. Every CROSSINGS_MOST crossings, or where a caller asks for fewer, the run ends. There the clock goes back by
- * whole periods where the system says that its forces repeat after one: the phase of the forcing has the digits of a
- * time below CROSSINGS_MOST periods, however long the motion is. What is found follows from the start, the options and
- * the numbers asked for. */
+ * Stroboscopic states are evaluated on the segments of the motion, so that steps continue across them; impacts are
+ * events. Every CROSSINGS_MOST crossings, or where a caller asks for fewer, the run ends. There the clock is set
+ * back by whole periods if the forces of the system repeat after one: the phase of the forcing has the digits of a
+ * time below CROSSINGS_MOST periods, however long the motion is. Results depend on the start, the options and the
+ * numbers asked for only. */
 
 typedef struct crossings {
   ric_motion_section_options options;
   const ric_system *system;
   ric_trajectory *trajectory;
-  lyapunov_course *course; /* NULL: no tangent vectors. Set to NULL when they are lost */
+  lyapunov_course *course; /* NULL: no tangent vectors. Set to NULL where they are not defined any more */
   size_t n, m, size;       /* of a state on the section */
-  double *store;           /* all arrays */
+  double *store;           /* owns all arrays */
   double *states;          /* [found][size] those of the last call, CROSSINGS_MOST at most */
   size_t found;
   unsigned long long impacts; /* of all obstacles, since the caller set it */
@@ -33,8 +33,8 @@ typedef struct crossings {
   ric_sampler sampler;
   double *times; /* [CROSSINGS_MOST] of stroboscopic crossings */
   size_t wanted; /* impacts */
-  size_t done;   /* periods on the clock at the start of a call */
-  bool pending;  /* the state after an impact is yet to be read */
+  size_t done;   /* periods of the clock at the start of a call */
+  bool pending;  /* an impact whose state has not been recorded yet */
   double last;   /* time of the last impact, or of the start */
 } crossings;
 
@@ -67,7 +67,7 @@ static void crossings_clear(crossings *c) {
   *c = (crossings){0};
 }
 
-/* Where the forcing is, in [0, T). */
+/* The phase of the forcing, as a time in [0, T). */
 static double remainder_of(double t, double period) {
   double left = fmod(t, period);
   return left < 0 ? left + period : left;
@@ -83,35 +83,35 @@ static ric_status crossings_start(crossings *c, const double *z, ric_error *erro
   return RIC_OK;
 }
 
-/* --- what is seen of the motion ----------------------------------------------------------------------------------- */
+/* --- observers ---------------------------------------------------------------------------------------------------- */
 
-static void put_state(crossings *c, size_t k, const double *q, const double *u) {
+static void record_crossing(crossings *c, size_t k, const double *q, const double *u) {
   double *z = c->states + k * c->size;
   memcpy(z, q, c->n * sizeof *z);
   if (c->m)
     memcpy(z + c->n, u, c->m * sizeof *z);
 }
 
-/* The state after an impact is that at the start of the next step: all that happens at its time is done. */
-static void take_pending(crossings *c) {
+/* Records the state after an impact, at the start of the next step: then all events of its time are over. */
+static void record_pending(crossings *c) {
   if (!c->pending)
     return;
   c->pending = false;
-  put_state(c, c->found, ric_trajectory_q(c->trajectory), ric_trajectory_u(c->trajectory));
+  record_crossing(c, c->found, ric_trajectory_q(c->trajectory), ric_trajectory_u(c->trajectory));
   if (c->size > c->n + c->m)
     c->states[c->found * c->size + c->n + c->m] = remainder_of(c->last, c->options.period);
   c->found++;
 }
 
-static int see_segment(const ric_segment *piece, double end, void *user) {
+static int on_segment(const ric_segment *piece, double end, void *user) {
   crossings *c = user;
   if (!at_impacts(c))
     return ric_sampler_segment(piece, end, &c->sampler);
-  take_pending(c);
+  record_pending(c);
   return 0;
 }
 
-static int see_event(const ric_event *event, void *user) {
+static int on_event(const ric_event *event, void *user) {
   crossings *c = user;
   if (!ric_event_jumps(event))
     return 0;
@@ -125,21 +125,21 @@ static int see_event(const ric_event *event, void *user) {
 
 /* --- running ------------------------------------------------------------------------------------------------------ */
 
-static bool loses_vectors(const ric_run *run) {
+static bool is_not_differentiable(const ric_run *run) {
   return run->outcome == RIC_RUN_GRAZING || run->outcome == RIC_RUN_NOT_DIFFERENTIABLE;
 }
 
-/* Runs on, without the tangent vectors from where they are lost. */
+/* Continues the run; without tangent vectors after an impact that has no derivative. */
 static ric_status run_to(crossings *c, double end, ric_run *run, ric_error *error) {
-  const ric_observer observer = {.segment = see_segment, .event = see_event, .user = c};
+  const ric_observer observer = {.segment = on_segment, .event = on_event, .user = c};
   if (c->course) {
     c->course->options.observer = &observer;
     ric_status status = lyapunov_course_run(c->course, end, run, error);
     c->course->options.observer = NULL;
-    if (status != RIC_OK || !loses_vectors(run))
+    if (status != RIC_OK || !is_not_differentiable(run))
       return status;
     c->course = NULL;
-    if (c->pending && c->found + 1 >= c->wanted) { /* the observer's end came with it */
+    if (c->pending && c->found + 1 >= c->wanted) { /* the same event ended the run */
       run->outcome = RIC_RUN_ENDED;
       return RIC_OK;
     }
@@ -156,19 +156,19 @@ static ric_status next_strobes(crossings *c, size_t count, ric_run *run, ric_err
   ric_sampler_finish(&c->sampler, c->trajectory);
   c->found = c->sampler.next;
   for (size_t k = 0; k < c->found; k++)
-    put_state(c, k, c->sampler.q + k * c->n, c->sampler.u + k * c->m);
+    record_crossing(c, k, c->sampler.q + k * c->n, c->sampler.u + k * c->m);
   c->done += count;
   return RIC_OK;
 }
 
-/* Runs that end without the last of the impacts go on as long as each of them has seen one. */
+/* A run ends `wait` after the last impact; it continues while each of these runs has found another impact. */
 static ric_status next_impacts(crossings *c, size_t count, ric_run *run, ric_error *error) {
   c->found = 0;
   c->wanted = count;
   do {
     double end = c->last + c->options.wait;
     RIC_TRY(run_to(c, end, run, error));
-    take_pending(c);
+    record_pending(c);
     if (run->outcome == RIC_RUN_COMPLETED && !(c->last + c->options.wait > end))
       return snprintf(run->reason, sizeof run->reason, "no impact for %g", c->options.wait), RIC_OK;
   } while (run->outcome == RIC_RUN_COMPLETED);
@@ -177,17 +177,17 @@ static ric_status next_impacts(crossings *c, size_t count, ric_run *run, ric_err
   return RIC_OK;
 }
 
-/* Whether the clock may go back; not where nobody knows what the forces do. */
-static bool clock_turns(const crossings *c) {
+/* Whether the clock may be set back: not where the period of the forces is unknown. */
+static bool clock_is_periodic(const crossings *c) {
   const system_model *model = c->system->model;
   if (c->options.period > 0)
     return model->repeats && model->repeats(c->system, c->options.period);
   return model->forced && !model->forced(c->system);
 }
 
-static ric_status turn_clock(crossings *c, ric_error *error) {
+static ric_status set_clock_back(crossings *c, ric_error *error) {
   double period = c->options.period, t = ric_trajectory_time(c->trajectory), early = 0;
-  if (!clock_turns(c))
+  if (!clock_is_periodic(c))
     return RIC_OK;
   if (!at_impacts(c))
     early = c->options.phase * period;
@@ -204,19 +204,19 @@ static ric_status turn_clock(crossings *c, ric_error *error) {
  *  @returns as ric_trajectory_run */
 static ric_status crossings_next(crossings *c, size_t count, ric_run *run, ric_error *error) {
   RIC_TRY(at_impacts(c) ? next_impacts(c, count, run, error) : next_strobes(c, count, run, error));
-  return c->found == count ? turn_clock(c, error) : RIC_OK;
+  return c->found == count ? set_clock_back(c, error) : RIC_OK;
 }
 
-/* Iterates before the measured ones over which tangent vectors turn to where they belong. */
+/* Iterates before the measured ones in which tangent vectors align. */
 enum { ALIGNING = 64 };
 
-/* What slow impacts make of the rounding of a state, relative to it: 3e-11 was seen at speeds of 0.02. */
+/* Growth of the rounding of a state by slow impacts, relative to the state: up to 3e-11 at speeds of 0.02. */
 static const double NOISE = 1e-9;
 
 struct ric_motion_section {
   crossings crossings;
   lyapunov_course course;
-  double *window; /* the states that decide about the period */
+  double *window; /* the states of which the period is determined */
   size_t window_room;
 };
 
@@ -296,18 +296,19 @@ ric_status ric_motion_section_set_period(ric_motion_section *section, double per
 
 /* --- one attractor ------------------------------------------------------------------------------------------------ */
 
-/* A run on its way. */
-typedef struct journey {
+/* A run in progress. */
+typedef struct section_run {
   ric_motion_section *section;
   const ric_attractor_options *options;
   ric_attractor *attractor;
   size_t width; /* numbers of a state in the window */
   size_t done;  /* iterates */
   bool over;    /* diverged or failed */
-} journey;
+} section_run;
 
-/* A state for comparisons: where the forcing is becomes a point on a circle, so that the ends of a period are near. */
-static void put_in_window(const journey *j, const double *z, size_t k) {
+/* Adds a state to the window: the phase of the forcing as a point on a circle, so that both ends of a period are
+ * near. */
+static void add_to_window(const section_run *j, const double *z, size_t k) {
   const crossings *c = &j->section->crossings;
   double *row = j->section->window + k * j->width;
   size_t numbers = c->n + c->m;
@@ -319,12 +320,12 @@ static void put_in_window(const journey *j, const double *z, size_t k) {
   }
 }
 
-/* The last state behind the measured ones, as it is. */
-static double *last_of(const journey *j) {
+/* The last state, in its original form, stored after the window. */
+static double *last_of(const section_run *j) {
   return j->section->window + (2 * j->options->period_limit + 1) * j->width;
 }
 
-static void record_state(journey *j, const double *z) {
+static void record_state(section_run *j, const double *z) {
   const ric_attractor_options *o = j->options;
   ric_attractor *a = j->attractor;
   size_t size = j->section->crossings.size, measured = o->transient + o->measure;
@@ -334,7 +335,7 @@ static void record_state(journey *j, const double *z) {
   else
     memcpy(last_of(j), z, size * sizeof *z);
   if (j->done >= measured)
-    put_in_window(j, z, j->done - measured);
+    add_to_window(j, z, j->done - measured);
   if (j->done <= o->transient || j->done > o->transient + o->keep)
     return;
   size_t kept = j->done - o->transient - 1;
@@ -344,7 +345,7 @@ static void record_state(journey *j, const double *z) {
     memcpy(a->states + kept * size, z, size * sizeof *z);
 }
 
-static void end(journey *j, ric_attractor_kind kind, const char *reason) {
+static void end_run(section_run *j, ric_attractor_kind kind, const char *reason) {
   ric_attractor *a = j->attractor;
   size_t transient = j->options->transient, measured = transient + j->options->measure;
   j->over = true;
@@ -357,8 +358,8 @@ static void end(journey *j, ric_attractor_kind kind, const char *reason) {
     memcpy(a->z, last_of(j), j->section->crossings.size * sizeof *a->z);
 }
 
-/* Takes the crossings that were found, up to one that is out of bounds. */
-static void take_all(journey *j) {
+/* Records the crossings found, up to one that is out of bounds. */
+static void record_crossings(section_run *j) {
   const crossings *c = &j->section->crossings;
   char reason[128];
   for (size_t k = 0; k < c->found; k++) {
@@ -366,32 +367,32 @@ static void take_all(journey *j) {
     for (size_t i = 0; i < c->n + c->m; i++)
       if (!(fabs(z[i]) <= j->options->bound)) {
         snprintf(reason, sizeof reason, "number %zu of the state is %g", i, z[i]);
-        end(j, RIC_ATTRACTOR_DIVERGED, reason);
+        end_run(j, RIC_ATTRACTOR_DIVERGED, reason);
         return;
       }
     record_state(j, z);
   }
 }
 
-static void say_why(journey *j, const ric_run *run) {
+static void end_with_reason(section_run *j, const ric_run *run) {
   char reason[320];
   if (run->outcome == RIC_RUN_COMPLETED)
     snprintf(reason, sizeof reason, "%s", run->reason);
   else
     snprintf(reason, sizeof reason, "%s: %s", ric_run_outcome_name(run->outcome), run->reason);
-  end(j, run->outcome == RIC_RUN_BLOW_UP ? RIC_ATTRACTOR_DIVERGED : RIC_ATTRACTOR_FAILED, reason);
+  end_run(j, run->outcome == RIC_RUN_BLOW_UP ? RIC_ATTRACTOR_DIVERGED : RIC_ATTRACTOR_FAILED, reason);
 }
 
-/* So many iterates more. */
-static ric_status go_on(journey *j, size_t count, ric_error *error) {
+/* Runs over a number of iterates. */
+static ric_status run_iterates(section_run *j, size_t count, ric_error *error) {
   crossings *c = &j->section->crossings;
   for (size_t left = count, asked; left > 0 && !j->over; left -= asked) {
     ric_run run;
     asked = left < CROSSINGS_MOST ? left : CROSSINGS_MOST;
     RIC_TRY(crossings_next(c, asked, &run, error));
-    take_all(j);
+    record_crossings(j);
     if (!j->over && c->found < asked)
-      say_why(j, &run);
+      end_with_reason(j, &run);
   }
   return RIC_OK;
 }
@@ -412,24 +413,24 @@ static ric_status prepare_course(ric_motion_section *s, size_t count, ric_error 
 }
 
 /* The iterates before the measured ones, the last of them with tangent vectors. */
-static ric_status settle(journey *j, ric_error *error) {
+static ric_status run_transient(section_run *j, ric_error *error) {
   const ric_attractor_options *o = j->options;
   size_t aligning = o->exponents == 0 ? 0 : o->transient < ALIGNING ? o->transient : ALIGNING;
-  RIC_TRY(go_on(j, o->transient - aligning, error));
+  RIC_TRY(run_iterates(j, o->transient - aligning, error));
   if (o->exponents == 0 || j->over)
     return RIC_OK;
   RIC_TRY(prepare_course(j->section, o->exponents, error));
   j->section->crossings.course = &j->section->course;
-  return go_on(j, aligning, error);
+  return run_iterates(j, aligning, error);
 }
 
-static ric_status measure(journey *j, ric_error *error) {
+static ric_status measure(section_run *j, ric_error *error) {
   const ric_attractor_options *o = j->options;
   crossings *c = &j->section->crossings;
   c->impacts = 0;
   if (c->course)
     lyapunov_course_forget(c->course);
-  RIC_TRY(go_on(j, o->measure, error));
+  RIC_TRY(run_iterates(j, o->measure, error));
   if (j->over)
     return RIC_OK;
   j->attractor->impacts = (double)c->impacts / (double)o->measure;
@@ -438,12 +439,12 @@ static ric_status measure(journey *j, ric_error *error) {
   return RIC_OK;
 }
 
-static ric_status decide(journey *j, ric_error *error) {
+static ric_status find_period(section_run *j, ric_error *error) {
   size_t limit = j->options->period_limit;
   ric_attractor *a = j->attractor;
   j->section->crossings.course = NULL;
   RIC_TRY(ric_trajectory_carry(j->section->crossings.trajectory, 0, NULL, NULL, error));
-  RIC_TRY(go_on(j, 2 * limit, error));
+  RIC_TRY(run_iterates(j, 2 * limit, error));
   if (j->over)
     return RIC_OK;
   a->iterates = j->options->transient + j->options->measure;
@@ -456,11 +457,11 @@ static ric_status decide(journey *j, ric_error *error) {
   return RIC_OK;
 }
 
-static ric_status travel(journey *j, ric_error *error) {
-  RIC_TRY(settle(j, error));
+static ric_status run_all(section_run *j, ric_error *error) {
+  RIC_TRY(run_transient(j, error));
   if (!j->over)
     RIC_TRY(measure(j, error));
-  return j->over ? RIC_OK : decide(j, error);
+  return j->over ? RIC_OK : find_period(j, error);
 }
 
 static ric_status reserve_states(ric_motion_section *s, size_t width, size_t limit, ric_error *error) {
@@ -495,7 +496,7 @@ ric_status ric_motion_section_run(ric_motion_section *section, const ric_attract
   crossings *c = &section->crossings;
   ric_attractor_options o = options ? *options : ric_attractor_options_default();
   size_t numbers = c->n + c->m;
-  journey j = {.section = section, .options = &o, .attractor = attractor};
+  section_run j = {.section = section, .options = &o, .attractor = attractor};
   RIC_TRY(ric_attractor_options_check(&o, c->size, error));
   if (o.exponents > numbers)
     return ric_fail(error, RIC_EINVAL, "exponents = %zu, expected at most %zu", o.exponents, numbers);
@@ -505,5 +506,5 @@ ric_status ric_motion_section_run(ric_motion_section *section, const ric_attract
   c->trajectory->options.poll = o.poll.call ? o.poll : c->options.trajectory.poll;
   RIC_TRY(crossings_start(c, attractor->z, error));
   clear_results(&o, c->size, attractor);
-  return travel(&j, error);
+  return run_all(&j, error);
 }

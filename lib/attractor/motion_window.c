@@ -7,7 +7,7 @@
 #include "ricochet/family.h"
 #include "ricochet/motion_window.h"
 
-/* What shooting needs to know of a forced motion on its attractor. */
+/* The data that shooting needs of a forced motion on its attractor. */
 
 /** A motion over its period. */
 typedef struct motion_record {
@@ -17,18 +17,18 @@ typedef struct motion_record {
   double *q, *u;    /* [n], [m] after the first impact; without impacts at t = 0 */
 } motion_record;
 
-/* What the observer of a run does. */
-typedef struct listener {
+/* Data of the observer of a run. */
+typedef struct impact_recorder {
   motion_record *record;
   size_t seen;
-  bool keeps;         /* writes them down, else counts */
-  bool ends_at_first; /* the run at the first impact */
-  const char *what;   /* there is no motion for shooting: why, and when; NULL */
+  bool keeps;         /* records the impacts, else only counts them */
+  bool ends_at_first; /* ends the run at the first impact */
+  const char *what;   /* an event that rules out shooting, and its time; NULL: none */
   double when;
-} listener;
+} impact_recorder;
 
-static int hear(const ric_event *event, void *user) {
-  listener *l = user;
+static int on_event(const ric_event *event, void *user) {
+  impact_recorder *l = user;
   if (event->kind == RIC_EVENT_CHATTER || event->kind == RIC_EVENT_REST || event->kind == RIC_EVENT_RELEASE) {
     l->what = ric_event_name(event->kind);
     l->when = event->time;
@@ -44,19 +44,19 @@ static int hear(const ric_event *event, void *user) {
   return l->ends_at_first;
 }
 
-static ric_status run_to(ric_trajectory *trajectory, double end, listener *l, ric_error *error) {
-  const ric_observer observer = {.event = hear, .user = l};
+static ric_status run_to(ric_trajectory *trajectory, double end, impact_recorder *l, ric_error *error) {
+  const ric_observer observer = {.event = on_event, .user = l};
   ric_run run;
   RIC_TRY(ric_trajectory_run(trajectory, end, &observer, &run, error));
   if (l->what)
-    return ric_fail(error, RIC_ENUMERIC, "%s at t = %.9g: no motion with impacts one by one", l->what, l->when);
+    return ric_fail(error, RIC_ENUMERIC, "%s at t = %.9g: expected a motion with isolated impacts", l->what, l->when);
   if (run.outcome == RIC_RUN_COMPLETED || (run.outcome == RIC_RUN_ENDED && l->ends_at_first))
     return RIC_OK;
   return ric_fail(error, RIC_ENUMERIC, "the motion stops at t = %.9g: %s %.150s", run.time,
                   ric_run_outcome_name(run.outcome), run.reason);
 }
 
-static void keep_state(motion_record *record, const ric_trajectory *trajectory, const ric_system *system) {
+static void copy_state(motion_record *record, const ric_trajectory *trajectory, const ric_system *system) {
   memcpy(record->q, ric_trajectory_q(trajectory), ric_system_coordinates(system) * sizeof *record->q);
   if (ric_system_speeds(system) > 0)
     memcpy(record->u, ric_trajectory_u(trajectory), ric_system_speeds(system) * sizeof *record->u);
@@ -72,17 +72,17 @@ static ric_status allocate_record(motion_record *record, const ric_system *syste
   return ric_fail(error, RIC_ENOMEM, "no memory for a motion with %zu impacts", record->count);
 }
 
-/* Time counts from the beginning of the period in which the first impact is. */
+/* Shifts times so that the first impact is in the first period. */
 static void fold_times(motion_record *record, double period) {
   const double origin = floor(record->times[0] / period) * period;
   for (size_t k = 0; k < record->count; k++)
     record->times[k] -= origin;
 }
 
-/* First the impacts are counted, then written down: runs do the same thing each time. */
+/* Counts the impacts in one run and records them in another: both runs are identical. */
 static ric_status record_motion(motion_record *record, ric_trajectory *trajectory, const ric_system *system,
                                 double period, double t, const double *q, const double *u, ric_error *error) {
-  listener counter = {.record = record}, writer = {.record = record, .keeps = true, .ends_at_first = true};
+  impact_recorder counter = {.record = record}, writer = {.record = record, .keeps = true, .ends_at_first = true};
   RIC_TRY(ric_trajectory_start(trajectory, t, q, u, error));
   RIC_TRY(run_to(trajectory, t + period, &counter, error));
   record->count = counter.seen;
@@ -90,24 +90,23 @@ static ric_status record_motion(motion_record *record, ric_trajectory *trajector
   RIC_TRY(ric_trajectory_start(trajectory, t, q, u, error));
   if (record->count == 0) {
     RIC_TRY(run_to(trajectory, ceil(t / period) * period, &counter, error));
-    keep_state(record, trajectory, system);
+    copy_state(record, trajectory, system);
     return RIC_OK;
   }
   RIC_TRY(run_to(trajectory, t + period, &writer, error));
-  keep_state(record, trajectory, system);
+  copy_state(record, trajectory, system);
   writer.ends_at_first = false;
   RIC_TRY(run_to(trajectory, t + period, &writer, error));
   fold_times(record, period);
   return RIC_OK;
 }
 
-/** Runs it from (t, q, u) over a period.
+/** Integrates it from (t, q, u) over a period.
  *  @param motion  options of the flow and the poll of its runs
- *  @returns RIC_ENUMERIC for a run that does not get there, for impacts that accumulate and contacts that last; as
- *           ric_trajectory_create, _start, _run; RIC_ENOMEM; always to be cleared */
-static ric_status motion_record_take(motion_record *record, const ric_system *system,
-                                     const ric_shooting_problem *motion, double period, double t, const double *q,
-                                     const double *u, ric_error *error) {
+ *  @returns RIC_ENUMERIC for a run that fails, for chatter and sticking; as ric_trajectory_create, _start, _run;
+ *  RIC_ENOMEM; always to be cleared */
+static ric_status motion_record_run(motion_record *record, const ric_system *system, const ric_shooting_problem *motion,
+                                    double period, double t, const double *q, const double *u, ric_error *error) {
   ric_trajectory_options options = ric_trajectory_options_default();
   ric_trajectory *trajectory = NULL;
   *record = (motion_record){0};
@@ -129,26 +128,27 @@ static void motion_record_clear(motion_record *record) {
 
 enum { MOST_TRIES = 5 };
 
-/* Steps of a walk that has passed the end of the window without a special point are shortened by it. */
+/* If a continuation run has passed the end of the window without a special point, its last step is repeated, shorter
+ * by this factor. */
 static const double shorter = 0.25;
 
-/* Motions of a shorter period come back within it, over the largest number of their states. */
+/* A motion of a shorter period returns within it, over the largest number of its states. */
 static const double same = 1e-8;
 
-/* Special points are located to it, relative to p. */
+/* Special points are located to this accuracy, relative to p. */
 static const double locate_tol = 1e-12;
 
-/* The family, whose parameter is p / scale: lengths of its curve are then in parts of p. */
+/* The family, with the parameter p / scale: lengths of its curve are then relative to p. */
 typedef struct search {
-  const ric_family_problem *problem; /* the caller's */
+  const ric_family_problem *problem; /* of the caller */
   double scale, p, low, high;
   size_t periods;
   ric_family_problem scaled;
   ric_family_options options;
   motion_record record;
   size_t unknowns;
-  double *z, *last; /* [unknowns] the motion at p, and the last one on the way that attracts */
-  double last_at;   /* its parameter, scaled */
+  double *z, *last; /* [unknowns] the motion at p, and the last stable one of the run */
+  double last_at;   /* parameter of the latter, over the scale */
   ric_motion_window window;
 } search;
 
@@ -197,7 +197,7 @@ static void set_up(search *s, const ric_family_options *options) {
   s->options.multipliers = true;
 }
 
-/* Of the forcing, times the periods. */
+/* The period of the forcing times the number of periods. */
 static ric_status find_period(search *s, double *period, ric_error *error) {
   const double at = s->p / s->scale;
   double given = s->problem->given;
@@ -217,8 +217,8 @@ static double distance(const double *a, const double *b, size_t count, double *l
   return most;
 }
 
-/* Multipliers of a motion that repeats before its period are powers of its own: what ends its window would be
- * misnamed. States are compared half a forcing period after the first one, which may be at an impact. */
+/* The multipliers of a motion traversed several times are powers of its own, and the end of its window would get a
+ * wrong kind. The states compared are half a forcing period after the first one, which may be at an impact. */
 static ric_status check_least(const search *s, ric_shooting *shooting, double period, ric_error *error) {
   const size_t n = ric_system_coordinates(s->problem->system), m = ric_system_speeds(s->problem->system);
   const size_t count = 2 * s->periods + 1;
@@ -241,7 +241,7 @@ static ric_status check_least(const search *s, ric_shooting *shooting, double pe
   return status;
 }
 
-/* Makes the motion exact. */
+/* Solves the equations of shooting. */
 static ric_status find_motion(search *s, double period, ric_error *error) {
   const motion_record *r = &s->record;
   ric_family *family = NULL;
@@ -260,11 +260,11 @@ static ric_status find_motion(search *s, double period, ric_error *error) {
 
 /* --- its edges ---------------------------------------------------------------------------------------------------- */
 
-typedef struct walk {
+typedef struct edge_search {
   search *s;
   ric_motion_edge edge;
-  bool begun, again, found, late; /* again: from a point on the way */
-} walk;
+  bool begun, again, found, late; /* again: from a later point of the run */
+} edge_search;
 
 static bool ends_window(ric_family_kind kind) {
   switch (kind) {
@@ -282,13 +282,13 @@ static bool ends_window(ric_family_kind kind) {
   }
 }
 
-static bool attracts(const ric_family_point *point) {
+static bool is_stable(const ric_family_point *point) {
   return point->orbit->outcome == RIC_ADMISSIBLE && point->multipliers->stable == RIC_STABLE;
 }
 
-/* Whether a special point lies beyond the end of the window, a multiplier having left the circle before it without a
- * change of sign that was seen. Where an impact is lost multipliers are infinite. */
-static bool comes_late(const ric_family_point *point) {
+/* Whether a special point is beyond the end of the window: a multiplier had left the unit circle before it, and its
+ * test function did not change sign. Where an impact is lost multipliers are infinite. */
+static bool is_beyond_edge(const ric_family_point *point) {
   switch (point->kind) {
   case RIC_FAMILY_REGULAR:
     return point->orbit->outcome == RIC_INADMISSIBLE || point->multipliers->stable == RIC_UNSTABLE;
@@ -301,10 +301,10 @@ static bool comes_late(const ric_family_point *point) {
   }
 }
 
-static int see_start(walk *w, const ric_family_point *point) {
+static int check_start(edge_search *w, const ric_family_point *point) {
   ric_motion_window *window = &w->s->window;
   w->begun = true;
-  window->stable = attracts(point);
+  window->stable = is_stable(point);
   window->largest = point->multipliers->count > 0 ? point->multipliers->mu[0] : (ric_complex){NAN, NAN};
   if (!window->stable)
     snprintf(w->edge.reason, sizeof w->edge.reason, "%s, %s", ric_outcome_name(point->orbit->outcome),
@@ -312,35 +312,35 @@ static int see_start(walk *w, const ric_family_point *point) {
   return !window->stable;
 }
 
-/* Of the points that follow, verdicts next to an edge may be undecided. */
-static int see_window_point(const ric_family_point *point, void *user) {
-  walk *w = user;
+/* At later points, next to an edge, the verdict may be undecided. */
+static int visit_point(const ric_family_point *point, void *user) {
+  edge_search *w = user;
   search *s = w->s;
   w->edge = (ric_motion_edge){.kind = point->kind, .p = point->parameter * s->scale};
   if (!w->begun && !w->again)
-    return see_start(w, point);
-  if (point->kind == RIC_FAMILY_REGULAR && attracts(point)) {
+    return check_start(w, point);
+  if (point->kind == RIC_FAMILY_REGULAR && is_stable(point)) {
     memcpy(s->last, point->z, s->unknowns * sizeof *s->last);
     s->last_at = point->parameter;
   }
   w->found = ends_window(point->kind);
-  w->late = comes_late(point);
+  w->late = is_beyond_edge(point);
   return w->found || w->late;
 }
 
-/* From the last motion that attracts. */
-static ric_status follow(search *s, walk *w, const ric_family_options *options, ric_error *error) {
+/* Follows the family from the last stable motion. */
+static ric_status follow_edge(search *s, edge_search *w, const ric_family_options *options, ric_error *error) {
   ric_family *family = NULL;
   ric_curve_run run;
   w->found = w->late = false;
   RIC_TRY(ric_family_create(&s->scaled, options, &family, error));
-  ric_status status = ric_family_follow(family, s->last, s->last_at, NULL, see_window_point, w, &run, error);
+  ric_status status = ric_family_follow(family, s->last, s->last_at, NULL, visit_point, w, &run, error);
   ric_family_destroy(&family);
   RIC_TRY(status);
   if (!s->window.stable)
-    return ric_fail(error, RIC_ENUMERIC, "the motion at p = %.9g does not attract: %s", s->p, w->edge.reason);
+    return ric_fail(error, RIC_ENUMERIC, "the motion at p = %.9g is not a stable one: %s", s->p, w->edge.reason);
   if (w->late)
-    snprintf(w->edge.reason, sizeof w->edge.reason, "multipliers may have left the circle before");
+    snprintf(w->edge.reason, sizeof w->edge.reason, "multipliers may have left the unit circle before");
   else if (!w->found && run.end != RIC_CURVE_BOUND)
     snprintf(w->edge.reason, sizeof w->edge.reason, "%s%s%.80s", ric_curve_end_name(run.end), run.reason[0] ? ": " : "",
              run.reason);
@@ -349,17 +349,17 @@ static ric_status follow(search *s, walk *w, const ric_family_options *options, 
   return RIC_OK;
 }
 
-/* Where the end may have been passed, as zeros that come in pairs are, the last step is made again, shorter. */
+/* If the end may have been passed, as zeros of a test function in pairs are, the last step is repeated, shorter. */
 static ric_status find_edge(search *s, double direction, ric_motion_edge *edge, ric_error *error) {
   ric_family_options options = s->options;
-  walk w = {.s = s};
+  edge_search w = {.s = s};
   memcpy(s->last, s->z, s->unknowns * sizeof *s->z);
   s->last_at = s->p / s->scale;
   options.curve.direction = direction;
   options.curve.p_low = s->low / s->scale;
   options.curve.p_high = s->high / s->scale;
   for (int k = 0; k < MOST_TRIES && (k == 0 || w.late); k++) {
-    RIC_TRY(follow(s, &w, &options, error));
+    RIC_TRY(follow_edge(s, &w, &options, error));
     w.again = true;
     options.curve.step_most *= shorter;
     options.curve.step = fmin(options.curve.step, options.curve.step_most);
@@ -368,12 +368,12 @@ static ric_status find_edge(search *s, double direction, ric_motion_edge *edge, 
   return RIC_OK;
 }
 
-/* --- together ----------------------------------------------------------------------------------------------------- */
+/* --- windows ------------------------------------------------------------------------------------------------------ */
 
 static ric_status find_window(search *s, double t, const double *q, const double *u, ric_error *error) {
   double period;
   RIC_TRY(find_period(s, &period, error));
-  RIC_TRY(motion_record_take(&s->record, s->problem->system, &s->problem->motion, period, t, q, u, error));
+  RIC_TRY(motion_record_run(&s->record, s->problem->system, &s->problem->motion, period, t, q, u, error));
   s->scaled.motion.sequence = s->record.sequence;
   s->scaled.motion.count = s->record.count;
   s->window = (ric_motion_window){.periods = s->periods, .impacts = s->record.count, .p = s->p};

@@ -1,4 +1,4 @@
-/* Windows of a diagram, bracketed on the attractor and located on the cycle. */
+/* Windows of a diagram: bracketed on the attractor, located on the cycle. */
 #include "ricochet/windows.h"
 
 #include <math.h>
@@ -6,18 +6,18 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Brackets on the attractor are this narrow, relative to the parameter; where they close in on zero, as at d = 0
- * itself, relative to the distance of the two points of the line. */
+/* Width of brackets on the attractor, relative to the parameter; of brackets that converge to zero, as at d = 0
+ * itself, relative to the distance of two points of the line. */
 static const double bracket_width = 1e-2, bracket_least = 1e-9;
 
-/* Where a line keeps its sign, the search for edges on the cycle goes this many times nearer to zero and farther from
- * it. */
+/* If the parameter has one sign on the line, the search for edges on the cycle extends to values this many times
+ * smaller and larger. */
 static const double far_beyond = 10;
 
-/* What a run shows of a cycle. */
+/* Period and impacts of a cycle, from a run. */
 typedef struct signature {
   size_t period;   /* 0: no period */
-  int64_t impacts; /* in a period; -1: too few iterates are measured to say */
+  int64_t impacts; /* in a period; -1: too few iterates are measured */
 } signature;
 
 /* Consecutive points of one signature. */
@@ -29,8 +29,8 @@ typedef struct span {
 typedef struct search {
   const ric_window_line *line;
   signature *signatures; /* [points] */
-  double *from;          /* [size] where the run that the next one follows has ended */
-  double *end;           /* [size] where the last run has ended */
+  double *from;          /* [size] the end of the run that the next one continues */
+  double *end;           /* [size] the end of the last run */
   ric_windows *found;
   size_t room; /* of found */
   ric_error *error;
@@ -38,7 +38,7 @@ typedef struct search {
 
 /* --- on the attractor --------------------------------------------------------------------------------------------- */
 
-/* Where periods are not measured as a whole, the rest counts for at most as many impacts as a period has. */
+/* If the measured iterates are no multiple of the period, the remainder has at most as many impacts as a period. */
 static signature signature_of(const search *s, const ric_attractor *a) {
   const size_t period = a->kind == RIC_ATTRACTOR_PERIODIC ? a->period : 0, measured = s->line->measured;
   const double of_period = a->impacts * (double)period;
@@ -53,18 +53,18 @@ static bool are_alike(signature a, signature b) {
   return a.period == b.period && (a.impacts == b.impacts || a.impacts < 0 || b.impacts < 0);
 }
 
-/* Whether a run may go on from its end. */
-static bool goes_on(const ric_attractor *a) {
+/* Whether the next run may start at its end. */
+static bool can_continue(const ric_attractor *a) {
   return a->kind == RIC_ATTRACTOR_PERIODIC || a->kind == RIC_ATTRACTOR_APERIODIC;
 }
 
-/* Halves the way from a value inside to one outside until it is narrow.
- * @param earlier  the point of the two from which a line that is followed reaches the edge */
+/* Bisects between a value inside and one outside until the bracket is narrow.
+ * @param earlier  the one of both from which a line that is followed reaches the edge */
 static ric_status narrow_bracket(search *s, const span *w, size_t earlier, double *inside, double *outside) {
   const ric_window_line *line = s->line;
   const size_t bytes = line->size * sizeof *s->from;
   const double least = bracket_least * fabs(*inside - *outside);
-  const bool starts_inside = earlier >= w->first, follows = line->follow && goes_on(&line->attractors[earlier]);
+  const bool starts_inside = earlier >= w->first, follows = line->follow && can_continue(&line->attractors[earlier]);
   memcpy(s->from, line->attractors[earlier].z, bytes);
   while (fabs(*inside - *outside) > fmax(least, bracket_width * fmax(fabs(*inside), fabs(*outside)))) {
     const double middle = (*inside + *outside) / 2;
@@ -72,13 +72,13 @@ static ric_status narrow_bracket(search *s, const span *w, size_t earlier, doubl
     RIC_TRY(line->run(middle, follows ? s->from : NULL, &there, line->user, s->error));
     const bool is_inside = are_alike(signature_of(s, &there), w->of);
     *(is_inside ? inside : outside) = middle;
-    if (is_inside == starts_inside && goes_on(&there))
+    if (is_inside == starts_inside && can_continue(&there))
       memcpy(s->from, s->end, bytes);
   }
   return RIC_OK;
 }
 
-/* Where a window begins and ends on the attractor. */
+/* The beginning and the end of a window on the attractor. */
 static ric_status find_bracket(search *s, const span *w, ric_window *window) {
   const ric_window_line *line = s->line;
   double first[2] = {line->p[w->first], NAN}, last[2] = {line->p[w->last], NAN}; /* inside, outside */
@@ -155,8 +155,8 @@ ric_status ric_window_locate_cycle(const ric_map_line *maps, double p, const dou
   return RIC_OK;
 }
 
-/* Why the family came to an end at no special point; "" where it came to one, or to the end of the search. */
-static void put_reason(const ric_motion_window *found, ric_window *window) {
+/* The reason for which the family ended at no special point; "" if it ended at one, or at a bound of the search. */
+static void set_reason(const ric_motion_window *found, ric_window *window) {
   const bool at_low = found->low.reason[0] != '\0';
   const char *reason = at_low ? found->low.reason : found->high.reason;
   if (reason[0])
@@ -174,14 +174,14 @@ ric_status ric_window_locate_motion(const ric_family_problem *problem, double p,
   window->high_kind = (int)found.high.kind;
   window->impacts = (int64_t)found.impacts;
   window->largest = found.largest;
-  put_reason(&found, window);
+  set_reason(&found, window);
   return RIC_OK;
 }
 
 /* --- all windows of a line ---------------------------------------------------------------------------------------- */
 
-/* Whether a window has been located around a value, with this period or a part of it, and its impacts: near a flip the
- * attractor is slow, and hides its period or returns only after two of them. */
+/* Whether a known window contains a value, with this period or a divisor of it, and its impacts: near a flip
+ * convergence is slow, and the period is not found, or is twice that of the window. */
 static bool is_known(const search *s, signature of, double value) {
   for (size_t i = s->found->count; i-- > 0;) {
     const ric_window *w = &s->found->windows[i];
@@ -193,8 +193,8 @@ static bool is_known(const search *s, signature of, double value) {
   return false;
 }
 
-/* Takes those out that belong to a window that was found after them. */
-static void drop_known(search *s) {
+/* Removes windows with an unknown number of impacts that are part of a window found later. */
+static void remove_known(search *s) {
   ric_windows *found = s->found;
   size_t kept = 0;
   for (size_t i = 0; i < found->count; i++) {
@@ -206,7 +206,7 @@ static void drop_known(search *s) {
   found->count = kept;
 }
 
-/* Room for one more. @returns NULL without memory */
+/* Makes room for one more. @returns NULL without memory */
 static ric_window *grow(search *s) {
   ric_windows *found = s->found;
   if (found->count == s->room) {
@@ -244,7 +244,7 @@ static ric_status find_windows(search *s) {
     if (s->signatures[i].period > 0)
       RIC_TRY(add_window(s, &(span){.first = i, .last = next - 1, .of = s->signatures[i]}));
   }
-  drop_known(s);
+  remove_known(s);
   return RIC_OK;
 }
 

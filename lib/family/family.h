@@ -28,7 +28,7 @@ struct ric_family {
   size_t unknowns, impacts, tests; /* impacts with gap rates of their own */
   double at[2];                    /* parameters in the system; NaN: none yet */
   double given;                    /* with them */
-  double *below, *above;           /* [unknowns] residuals beside a point */
+  double *below, *above;           /* [unknowns] residuals at shifted parameters */
   ric_orbit orbit;                 /* of the motion evaluated last: */
   ric_multipliers multipliers;
   double *evaluated_z, evaluated_at[2]; /* [unknowns] the motion of the last run, and its parameters; NaN: none */

@@ -287,12 +287,11 @@ static int record_even_point(const ric_family_point *point, void *user) {
 static ric_status fail_before_all_terms(const homotopy *h, const ric_curve_run *run, ric_error *error) {
   char begin[RIC_REASON_BYTES];
   snprintf(begin, sizeof begin,
-           "no motion of the period %.6g goes on from that of the linear part: with growing nonlinear terms ",
-           h->period);
+           "the motion of the linear part with the period %.6g does not continue to all nonlinear terms: ", h->period);
   if (run->end == RIC_CURVE_ENDED)
-    return ric_fail(error, RIC_ENUMERIC, "%sthe family turns back at %.4g of them", begin, h->factor);
-  return ric_fail(error, RIC_ENUMERIC, "%sit comes to %.4g of them: %.80s", begin, h->factor,
-                  run->reason[0] ? run->reason : "its steps are used up");
+    return ric_fail(error, RIC_ENUMERIC, "%sits family has a fold at %.4g of them", begin, h->factor);
+  return ric_fail(error, RIC_ENUMERIC, "%sits family reaches %.4g of them: %.80s", begin, h->factor,
+                  run->reason[0] ? run->reason : "no more steps are allowed");
 }
 
 static ric_status continue_even(homotopy *h, ric_error *error) {
@@ -300,7 +299,7 @@ static ric_status continue_even(homotopy *h, ric_error *error) {
   ric_error why = {0};
   const ric_status status = ric_family_follow(h->family, h->z, 0, NULL, record_even_point, h, &run, &why);
   if (status != RIC_OK)
-    return ric_fail(error, status, "the motion of the linear part does not go on: %.150s", why.message);
+    return ric_fail(error, status, "the motion of the linear part cannot be continued: %.150s", why.message);
   return run.end == RIC_CURVE_BOUND && h->factor == 1 ? RIC_OK : fail_before_all_terms(h, &run, error);
 }
 
@@ -371,7 +370,7 @@ static ric_status find_linear_mode(homotopy *h, size_t mode, size_t swings, ric_
   RIC_TRY(find_mode(h->system, mode, &w, h->z, error));
   const double own = h->z[particle];
   if (!(w > 0 && fabs(own) > moves_tol))
-    return ric_fail(error, RIC_EINVAL, "mode %zu, of the frequency %g, moves particle %zu by %.3g: it grazes nothing",
+    return ric_fail(error, RIC_EINVAL, "mode %zu, of the frequency %g, moves particle %zu by %.3g: it cannot graze",
                     mode, w, particle, own);
   for (size_t i = 0; i < h->particles; i++)
     h->z[i] = i == particle ? 0 : obstacle->position * h->z[i] / own;

@@ -7,7 +7,7 @@
 
 #include "flow/lattice_series.h"
 
-/* What a solver finds: the state of the chain at both ends of the half period. */
+/* The solution: the state of the chain at both ends of the half period. */
 
 /** Arrays [sites], borrowed. */
 typedef struct boundary_state {

@@ -15,7 +15,7 @@ static ric_status check_obstacle(const ric_system *s, const char *where, size_t 
     return ric_fail(error, RIC_EINVAL, "%s names obstacle %zu, expected one below %zu", where, obstacle,
                     s->obstacle_count);
   if (system_complies(s, obstacle))
-    return ric_fail(error, RIC_EINVAL, "%s names obstacle %zu, which is compliant: nothing jumps there", where,
+    return ric_fail(error, RIC_EINVAL, "%s names obstacle %zu, which is compliant, expected a rigid one", where,
                     obstacle);
   return RIC_OK;
 }
@@ -33,12 +33,12 @@ static ric_status check_problem(const ric_system *s, const ric_shooting_problem 
   if (p->energy_given && !even && p->kind != RIC_MOTION_CONSERVATIVE)
     return ric_fail(error, RIC_EINVAL,
                     "the energy is given, expected the period: only even and conservative motions "
-                    "come in families");
+                    "have families along their energy");
   if (p->pieces > MOST_PIECES)
     return ric_fail(error, RIC_EINVAL, "pieces = %zu, expected at most %d", p->pieces, MOST_PIECES);
   if (!even && p->start_count + p->half_count > 0)
     return ric_fail(error, RIC_EINVAL,
-                    "impacts at t = 0 or T/2 of a motion that is not even: name them in the "
+                    "impacts at t = 0 or T/2 of a motion that is not even: they belong to the "
                     "sequence");
   if (even && (!s->obstacles && s->obstacle_count > 0))
     return ric_fail(error, RIC_EINVAL, "an even motion needs obstacles at coordinates");

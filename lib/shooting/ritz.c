@@ -266,7 +266,7 @@ static ric_status check_convergence(const ladder *l, double tolerance, ric_error
     return ric_fail(error, RIC_ENUMERIC, "Ritz's method converges with no number of functions up to %zu", l->r->most);
   if (tolerance == 0 || l->error_q <= tolerance)
     return RIC_OK;
-  return ric_fail(error, RIC_ENUMERIC, "Ritz's method is off by %.3g with %zu functions, expected %.3g at most",
+  return ric_fail(error, RIC_ENUMERIC, "the error of Ritz's method is %.3g with %zu functions, expected at most %.3g",
                   l->error_q, l->functions, tolerance);
 }
 

@@ -1,4 +1,4 @@
-/* Ritz's functions beside a motion found by shooting: the best fit, and the measured error. */
+/* The functions of Ritz's method against a motion found by shooting: the best fit, and the measured error. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,10 +9,10 @@
 #include "numeric/constants.h"
 #include "ritz.h"
 
-/* Functions that others make up for, but for this part of the first one, are left out of fits. */
+/* Fits omit functions that are linear combinations of others, up to this part of the first one. */
 static const double rank_tol = 1e-12;
 
-/* Tried values of w, from half of 2 pi / T up to it: smaller ones are worse and worse conditioned. */
+/* Number of values of w that the fit compares, from half of 2 pi / T up to it: the conditioning gets worse below. */
 enum { TRIED = 50 };
 
 /* Samples per function and period of the error: 32 per wave of the fastest one. */

@@ -20,7 +20,7 @@ typedef struct transfer {
   double period, origin; /* time of the first state */
   double from, to;       /* since then */
   double *x;             /* state at `from` */
-  double *matrix;        /* NULL: only the state is wanted */
+  double *matrix;        /* NULL: only the state is computed */
   bool begun;
 } transfer;
 
@@ -53,7 +53,7 @@ ric_status shooting_spectrum_jump(ric_shooting *s, const piece_run *run, ric_err
   return RIC_OK;
 }
 
-/* Integrates the part of a piece between the times. @param shift  the piece is taken that many time units later */
+/* Integrates the part of a piece between the times. @param shift  added to the times of the piece */
 static ric_status pass_piece(transfer *k, size_t index, double shift, ric_error *error) {
   ric_shooting *s = k->s;
   const double slack = end_tol * k->period;

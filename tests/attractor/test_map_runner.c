@@ -213,7 +213,7 @@ static void divergence_is_found_and_stays_alone(void **state) {
   for (size_t j = 0; j < 50; j++)
     assert_true(j < 6 ? a->values[j] == ldexp(1, 251 + (int)j) : isnan(a->values[j]) && isnan(a->states[j]));
   assert_close(a->impacts, 0, 0);
-  assert_string_equal(a->reason, "a number of the state came beyond 1.94267e+84 by iterate 300");
+  assert_string_equal(a->reason, "a number of the state exceeded 1.94267e+84 by iterate 300");
   map_runs_clear(&runs);
   map_runs_clear(&alone);
   ric_grazing_map_clear(&away);
@@ -299,7 +299,7 @@ static void options_out_of_range_are_refused(void **state) {
   REFUSED(bound, INFINITY, "bound = inf, expected a finite number > 0");
 #undef REFUSED
   check_refused(0, &fine, RIC_MAP_LANES_ONE, "size = 0, expected at least 1");
-  check_refused(3, &fine, RIC_MAP_LANES_KINDS, "lanes = unknown, which this processor has not");
+  check_refused(3, &fine, RIC_MAP_LANES_KINDS, "lanes = unknown, which this processor does not have");
 }
 
 static void maps_and_starts_that_are_not_finite_are_refused(void **state) {

@@ -429,13 +429,13 @@ static void motions_that_do_not_attract_are_refused(void **state) {
   const settled s = settle(&o, p);
   for (size_t n = 4; n < 10; n++)
     assert_told(ric_motion_window_find(&problem, n, p, 0, 1, s.t, &s.q, &s.u, NULL, &w, &e), RIC_ENUMERIC, &e,
-                "does not attract");
+                "is not a stable one");
   o.w = 0.1;
   o.lattice.frequency = 0.1;
   o.grazing = hypot(1 - 0.01, 0.3);
   const settled slow_one = settle(&o, 0.2);
   assert_told(ric_motion_window_find(&problem, 1, 0.2, 0, 1, slow_one.t, &slow_one.q, &slow_one.u, NULL, &w, &e),
-              RIC_ENUMERIC, &e, "no motion with impacts one by one");
+              RIC_ENUMERIC, &e, "expected a motion with isolated impacts");
   ric_system_destroy(&o.system);
 }
 

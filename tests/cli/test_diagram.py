@@ -291,7 +291,7 @@ def test_divergence_and_rest_are_outcomes(ricochet, folder):
     assert found["attractor_period"].tolist() == [5, 0, 0] and np.isnan(found["impacts"][1:]).all()
     for task in (1, 2):
         assert np.isnan(found["values"][task]).all() and np.isnan(found["state"][task]).all()
-        assert found["reason"][task].startswith(b"a number of the state came beyond 1e+100 by iterate ")
+        assert found["reason"][task].startswith(b"a number of the state exceeded 1e+100 by iterate ")
         assert np.isfinite(found["end"][task]).all()
     rest = found_by(ricochet, folder, swept(MAP.replace("keep: 100", "keep: 5, lyapunov: true"), "model.d, values: [-0.1, -1]"), name="rest")
     assert rest["outcome"] == 2 * ["periodic"] and rest["attractor_period"].tolist() == [1, 1]

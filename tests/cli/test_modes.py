@@ -155,13 +155,13 @@ def test_orbits_that_do_not_exist_are_rows(ricochet, folder):
 
 
 def test_orbits_that_end_before_all_nonlinear_terms_say_where(ricochet, folder):
-    """A spring that softens: the family turns back at a cubic coefficient, wherever it should have gone."""
+    """A spring that softens: the family has a fold at a cubic coefficient, whatever the last one is."""
     text = RITZ.replace("ritz", "shooting").split("sweep:")[0] + 'sweep: {parameter: "model.cubic[1]", values: [-0.05, -0.1, -10]}\n'
     with h5py.File(run(ricochet, folder, text)) as file:
         assert words_of(file["orbits/outcome"]) == ["admissible", "failed", "failed"]
         reasons = [reason.decode() for reason in file["orbits/reason"][1:]]
     for reason, part in zip(reasons, ("0.576", "0.00576")):
-        assert f"with growing nonlinear terms the family turns back at {part}" in reason, reason
+        assert f"does not continue to all nonlinear terms: its family has a fold at {part}" in reason, reason
 
 
 def test_the_first_mode_touches_the_wall_where_its_closed_form_says(ricochet, folder):
@@ -201,7 +201,7 @@ def test_families_that_turn_back_before_all_nonlinear_terms_are_told(ricochet, f
     assert found["outcome"][:2] == ["failed_start"] * 2 and found["outcome"][2] == "bound"
     for task, period, factor in ((0, "5.9", 0.138024), (1, "12", 0.0128931)):
         reason = found["reason"][task].decode()
-        words = f"no motion of the period {period} goes on from that of the linear part: with growing nonlinear terms the family turns back at "
+        words = f"the motion of the linear part with the period {period} does not continue to all nonlinear terms: its family has a fold at "
         assert reason.startswith(words) and abs(float(reason[len(words):].split()[0]) / factor - 1) < 1e-3, reason
     assert abs(found["point_period"][0] - 27.6) < 1e-9 and abs(found["point_energy"][0] - 2.15221) < 1e-5
 
@@ -210,7 +210,7 @@ def test_orbits_say_where_their_family_turns_back(ricochet, folder):
     text = RITZ.replace("ritz", "shooting").split("sweep:")[0] + "sweep: {parameter: orbit.period, values: [6]}\n"
     with h5py.File(run(ricochet, folder, text, "--set", "model.cubic[1]=0.1")) as file:
         assert words_of(file["orbits/outcome"]) == ["failed"]
-        assert file["orbits/reason"][0].decode().endswith("the family turns back at 0.0205 of them")
+        assert file["orbits/reason"][0].decode().endswith("its family has a fold at 0.0205 of them")
 
 
 def test_families_start_where_a_mode_touches_after_some_swings(ricochet, folder):

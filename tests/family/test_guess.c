@@ -402,7 +402,7 @@ static void guesses_that_do_not_exist_are_refused_with_their_reason(void **state
   assert_refused(ric_guess_mode(&linear, 0, 0, &guess, &error), RIC_EINVAL, &guess, &error, "energy 0");
   assert_refused(ric_guess_mode(&linear, 0, NAN, &guess, &error), RIC_EINVAL, &guess, &error, "energy nan");
   assert_refused(ric_guess_even(&s.problem, 0.9 * turn / sqrt(square_of(0)), &guess, &error), RIC_ENUMERIC, &guess,
-                 &error, "the family turns back at");
+                 &error, "its family has a fold at");
   assert_refused(ric_guess_grazing_mode(&s.problem, 2, 1, &guess, &error), RIC_EINVAL, &guess, &error, "mode = 2");
   assert_refused(ric_guess_grazing_mode(&s.problem, 0, 0, &guess, &error), RIC_EINVAL, &guess, &error, "0 swings");
   s.wall.stiffness = 100;
