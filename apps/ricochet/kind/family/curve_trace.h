@@ -3,7 +3,7 @@
 #ifndef RICOCHET_APP_CURVE_TRACE_H
 #define RICOCHET_APP_CURVE_TRACE_H
 
-#include "branch_family.h"
+#include "family_task.h"
 #include "kind/kind.h"
 
 /** Outcomes of what is followed: how its curve ended, and that it never began. */

@@ -101,7 +101,7 @@ static int grazing_evaluate(worker *w, const kind_plan *plan, task_range tasks, 
   study_values_at(w->task.values, tasks.first);
   g.found = grazing_clear_row(&plan->rows, row);
   const ric_status status = compute(&w->task, &g, tails);
-  branch_family_close(&w->task.family);
+  family_task_close(&w->task);
   if (status == RIC_ESTOPPED)
     return -1;
   if (status != RIC_OK) { /* of a task that does not fit, nothing is kept */
