@@ -32,8 +32,8 @@ static const column columns[] = {
 
 static table laid_out(void) {
   const table_axis axes[] = {{"particle", 3}, {"window", 2}};
-  table t = {.group = "samples", .row_axis = "task"};
-  table_add(&t, columns, sizeof columns / sizeof *columns, axes, 2);
+  table t = {0};
+  table_add(&t, &(column_list){"samples", "task", COLUMNS(columns)}, axes, 2);
   table_lay_out(&t);
   return t;
 }
@@ -100,6 +100,8 @@ static void rows_have_no_bytes_of_what_was_there(void **state) {
 static void layouts_leave_out_what_has_no_axis_and_say_their_size(void **state) {
   (void)state;
   const table t = laid_out();
+  assert_string_equal(t.group, "samples");
+  assert_string_equal(t.row_axis, "task");
   assert_int_equal(t.column_count, 8);
   assert_null(table_column(&t, "absent"));
   assert_string_equal(table_column(&t, "energy")->units, "1");
@@ -113,9 +115,10 @@ static void layouts_leave_out_what_has_no_axis_and_say_their_size(void **state) 
 /* Extents whose product does not fit into a size. */
 static void sizes_do_not_overflow(void **state) {
   (void)state;
-  table t = {.group = "samples", .row_axis = "task"};
+  table t = {0};
   const column wide[] = {{.name = "q", NUMBERS(sample, q), .axes = {"a", "b"}}};
-  table_add(&t, wide, 1, (table_axis[]){{"a", (size_t)1 << 40}, {"b", (size_t)1 << 40}}, 2);
+  const column_list list = {"samples", "task", COLUMNS(wide)};
+  table_add(&t, &list, (table_axis[]){{"a", (size_t)1 << 40}, {"b", (size_t)1 << 40}}, 2);
   assert_true(table_row_bytes(&t) == ldexp(1, 83));
 }
 

@@ -74,9 +74,11 @@ static bool set_extents(column *c, const table_axis *axes, size_t axis_count) {
   return true;
 }
 
-void table_add(table *t, const column *columns, size_t count, const table_axis *axes, size_t axis_count) {
-  for (size_t i = 0; i < count; i++) {
-    column added = columns[i];
+void table_add(table *t, const column_list *list, const table_axis *axes, size_t axis_count) {
+  t->group = list->group;
+  t->row_axis = list->row_axis;
+  for (size_t i = 0; i < list->count; i++) {
+    column added = list->columns[i];
     if (!added.units)
       added.units = "1";
     if (set_extents(&added, axes, axis_count))

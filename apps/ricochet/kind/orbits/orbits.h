@@ -33,6 +33,9 @@ typedef struct orbits_row {
   double ritz_frequency, ritz_error, ritz_error_v, ritz_defect;
 } orbits_row;
 
+/** The columns of its tables (kind.h). */
+extern const column_list orbits_lists[], orbits_special_lists[];
+
 /** Lays out the row. */
 void orbits_lay_out(const study_values *v, table *t);
 
