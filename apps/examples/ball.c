@@ -1,5 +1,5 @@
-/* A ball on a shaken table: gravity 1, restitution 0.8, table at 0.12 sin(3 t). It bounces ever lower, comes to rest on
- * the table, is thrown off again when the table falls away faster than gravity, and so on.
+/* A ball on a shaken table: gravity 1, restitution 0.8, table at 0.12 sin(3 t). Its bounces accumulate (chatter), it
+ * sticks to the table, and is released when the table accelerates downwards faster than gravity.
  *
  *   cc ball.c $(pkg-config --cflags --libs ricochet) -lm && ./a.out */
 #include <math.h>

@@ -1,7 +1,6 @@
-/* What happens when a driven double pendulum begins to touch a wall: unit masses and lengths, gravity 1, angles from
- * the vertical, torque F cos(1.2 t) at the upper joint, and more damping than it can swing with. With growing F the
- * swing of the lower bob, at x = sin q0 + sin q1, comes to the wall at x = 0.5; the coefficients of the return map
- * there tell whether the motion stays close by.
+/* A grazing bifurcation of a driven double pendulum with a wall: unit masses and lengths, gravity 1, angles from the
+ * vertical, torque F cos(1.2 t) at the upper joint, overdamped. As F increases the lower bob, at x = sin q0 + sin q1,
+ * reaches the wall at x = 0.5; the coefficients of the return map there decide whether the bifurcation is continuous.
  *
  *   cc grazing.c $(pkg-config --cflags --libs ricochet) -lm && ./a.out */
 #include <math.h>
@@ -41,7 +40,7 @@ static ric_status set_amplitude(ric_system *system, const double *p, double *per
   return RIC_OK;
 }
 
-/* What is made on the way. */
+/* Objects to be destroyed at the end. */
 typedef struct work {
   ric_system *system;
   ric_family *family;

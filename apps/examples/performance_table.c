@@ -1,5 +1,5 @@
-/* The performance table of [JAP]: 15 couplings from 0 to 0.187, the orbit of 30 particles with one that hits, found by
- * shooting from the orbit before; under the impact law and under Hertz's law with k = 100, by two flows. */
+/* The performance table of [JAP]: 15 couplings from 0 to 0.187, the orbit of 30 particles with one impact, found by
+ * shooting from the previous orbit; under the impact law and under Hertz's law with k = 100, by two flows. */
 #include <ricochet/ricochet.h>
 
 #include <math.h>
@@ -23,13 +23,13 @@ static int fail(const ric_error *error) {
   return 1;
 }
 
-/* Solves for all couplings. Without coupling the orbit is that of a single oscillator; under Hertz's law it presses as
- * deep as its energy takes it. */
+/* Solves for all couplings. Without coupling the orbit is that of a single oscillator; under Hertz's law its
+ * penetration follows from its energy. */
 static ric_status solve_all(ric_system *system, ric_lattice *lattice, ric_shooting *shooting, bool hertz, counted *c,
                             ric_error *error) {
   double q[N] = {0}, u[N] = {0}, z[N], speed = fabs(tan(period / 2));
   q[HIT] = hertz ? -1 - pow(5 * speed * speed / 400, 0.4) : -1;
-  u[HIT] = hertz ? 0 : speed / 2; /* any guess will do under the impact law */
+  u[HIT] = hertz ? 0 : speed / 2; /* any guess suffices under the impact law */
   RIC_TRY(ric_shooting_guess(shooting, q, u, NULL, period, z, error));
   for (int k = 0; k < COUPLINGS; k++) {
     int iterations;

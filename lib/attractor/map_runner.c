@@ -8,7 +8,7 @@
 #include <gsl/gsl_errno.h>
 
 #include "attractor.h"
-#include "map_kernels.h"
+#include "map_simd.h"
 #include "numeric/linear.h"
 #include "numeric/number_block.h"
 

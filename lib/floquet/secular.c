@@ -86,12 +86,12 @@ double secular_bytes(const secular *s) {
   return (double)(s->capacity * sizeof *s->store + s->pole_capacity * sizeof *s->poles) + matrices;
 }
 
-/* Fills row `seen` of the shapes. @returns whether the mode is hidden: its entries are rounding, 1e-16 */
-static bool set_shape(secular *s, const ric_chain *chain, size_t mode, size_t seen) {
+/* Fills row `visible` of the shapes. @returns whether the mode is hidden: its entries are rounding, 1e-16 */
+static bool set_shape(secular *s, const ric_chain *chain, size_t mode, size_t visible) {
   double largest = 0, rounding = 1e-12 / sqrt((double)s->particles);
   for (size_t k = 0; k < s->impacts; k++) {
     double shape = ric_chain_mode_shape(chain, mode, s->impact[k].particle);
-    s->modes.shape[k * s->particles + seen] = shape;
+    s->modes.shape[k * s->particles + visible] = shape;
     largest = fmax(largest, fabs(shape));
   }
   return largest <= rounding;
@@ -124,14 +124,14 @@ static int by_angle(const void *a, const void *b) {
 }
 
 static void set_modes(secular *s, const ric_chain *chain, double period) {
-  s->modes.seen = 0;
+  s->modes.visible = 0;
   for (size_t mode = 0; mode < s->particles; mode++) {
     double omega = ric_chain_frequency(chain, mode), x = omega * period / 2;
     double turn = remainder(2 * x, two_pi);
-    bool hidden = set_shape(s, chain, mode, s->modes.seen);
+    bool hidden = set_shape(s, chain, mode, s->modes.visible);
     s->poles[mode] = (secular_pole){.angle = fabs(turn), .signature = turn > 0 ? 1 : -1, .hidden = hidden};
     if (!hidden)
-      set_coefficients(s, s->modes.seen++, omega, x);
+      set_coefficients(s, s->modes.visible++, omega, x);
   }
   qsort(s->poles, s->particles, sizeof *s->poles, by_angle);
 }
@@ -159,7 +159,7 @@ static void set_resolvent(secular *s, double complex zeta) {
   double complex from_end = right ? 2 * half * half : 2 * other_half * other_half;
   double re = creal(from_end), im = cimag(from_end), sign = right ? 1 : -1;
   const double *pole = right ? s->modes.below_one : s->modes.above_minus_one;
-  for (size_t j = 0; j < s->modes.seen; j++) {
+  for (size_t j = 0; j < s->modes.visible; j++) {
     double x = re + sign * pole[j], square = x * x + im * im;
     s->modes.re[j] = x / square;
     s->modes.im[j] = -im / square;
@@ -173,7 +173,7 @@ static void sum_pair(secular *s, size_t k, size_t l, double complex beta) {
   double sum[6] = {0};
   bool same = s->impact[k].at_half == s->impact[l].at_half;
   const double *position = same ? a->same_position : a->other_position, *speed = same ? a->same_speed : a->other_speed;
-  for (size_t j = 0; j < a->seen; j++) {
+  for (size_t j = 0; j < a->visible; j++) {
     double both = first[j] * second[j], re = both * a->re[j], im = both * a->im[j];
     double mean = same ? 1 : a->other_mean[j];
     sum[0] += position[j] * re;
@@ -196,7 +196,7 @@ static void sum_along(secular *s, size_t k, double complex beta) {
   const double *shape = a->shape + k * s->particles, *plain = half ? a->along_half : a->along_start;
   const double *with_beta = half ? a->along_half_beta : a->along_start_beta;
   double sum[4] = {0};
-  for (size_t j = 0; j < a->seen; j++) {
+  for (size_t j = 0; j < a->visible; j++) {
     double re = shape[j] * a->re[j], im = shape[j] * a->im[j];
     sum[0] += plain[j] * re;
     sum[1] += plain[j] * im;

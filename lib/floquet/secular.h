@@ -38,9 +38,9 @@ typedef struct secular_pole {
 } secular_pole;
 
 /** Coefficients of the sums over modes: responses at the same half of the period, at the other one, and of the
- *  derivative by alpha along the orbit. Arrays [seen]. */
+ *  derivative by alpha along the orbit. Arrays [visible]. */
 typedef struct secular_modes {
-  size_t seen;                         /* modes that do not vanish at all impacts */
+  size_t visible;                      /* modes that do not vanish at all impacts */
   double *below_one, *above_minus_one; /* 1 - cos wT, 1 + cos wT */
   double *same_position, *same_speed;
   double *other_position, *other_mean, *other_speed;

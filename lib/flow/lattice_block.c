@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-#include "numeric/vectorised.h"
+#include "numeric/simd.h"
 
 /** Below this divisor a rounded reciprocal would change the amplitude of a mode by the same 1e-17 at every step, which
  *  accumulates; the rounding of a quotient depends on the motion and does not. Later coefficients are negligible. */

@@ -5,7 +5,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include "hertz_series.h"
-#include "numeric/vectorised.h"
+#include "numeric/simd.h"
 #include "ricochet/lattice.h"
 #include "ricochet/segment.h"
 #include "taylor_step.h"

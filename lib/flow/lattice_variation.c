@@ -120,7 +120,7 @@ void lattice_variation_stiffen(lattice_variation *v, const lattice_contacts *act
 #define LANE     wide_lanes
 #define LANES    WIDE
 #define NAMED(f) f##_wide
-#include "lattice_lanes.inc"
+#include "lattice_simd.inc"
 #undef LANE
 #undef LANES
 #undef NAMED
@@ -129,7 +129,7 @@ void lattice_variation_stiffen(lattice_variation *v, const lattice_contacts *act
 #define LANE     ric_lanes
 #define LANES    RIC_LANES
 #define NAMED(f) f##_half
-#include "lattice_lanes.inc"
+#include "lattice_simd.inc"
 #undef LANE
 #undef LANES
 #undef NAMED
@@ -137,7 +137,7 @@ void lattice_variation_stiffen(lattice_variation *v, const lattice_contacts *act
 #define LANE     double
 #define LANES    1
 #define NAMED(f) f##_one
-#include "lattice_lanes.inc"
+#include "lattice_simd.inc"
 #undef LANE
 #undef LANES
 #undef NAMED

@@ -6,7 +6,7 @@
 
 #include "lattice_series.h"
 #include "model/system_model.h"
-#include "numeric/vectorised.h"
+#include "numeric/simd.h"
 
 /* Tangent vectors of a lattice along a step of its Taylor flow.
  *
@@ -44,7 +44,7 @@ void lattice_variation_stiffen(lattice_variation *variation, const lattice_conta
 /** Propagates tangent vectors to the end of the accepted part. @param held  held coordinates */
 void lattice_variation_transport(lattice_variation *variation, const lattice_contacts *held, const tangents *d);
 
-/* Data shared with lattice_lanes.inc. */
+/* Data shared with lattice_simd.inc. */
 
 enum { LEVELS = 4 /* in use at a time */ };
 

@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-#include "numeric/vectorised.h"
+#include "numeric/simd.h"
 
 enum { LANES = 8 }; /* columns whose sums stay in registers */
 

@@ -4,7 +4,7 @@
 #include <float.h>
 #include <math.h>
 
-#include "numeric/vectorised.h"
+#include "numeric/simd.h"
 
 enum { LEAST_ORDER = 4, MOST_ORDER = 30, FIRST_COEFFICIENTS = 4 };
 

@@ -97,6 +97,12 @@ ric_status contacts_put_on(ric_trajectory *tr, const size_t *obstacles, size_t c
 /** Projects held contacts of user systems that have drifted back onto their obstacles. @param moved  whether any was */
 ric_status contacts_keep_on(ric_trajectory *tr, bool *moved, ric_error *error);
 
+/** Rates of a state at time t into tr->rates, and the second derivative of a gap from these rates. @returns
+ *  RIC_ECALLBACK with the failure of the system in the message */
+ric_status contact_rates(ric_trajectory *tr, double t, const double *q, const double *u, ric_error *error);
+ric_status contact_acceleration(ric_trajectory *tr, double t, const double *q, const double *u, size_t obstacle,
+                                double *acceleration, ric_error *error);
+
 /** Second derivative of a gap in the current state, with its own contact open. */
 ric_status gap_acceleration(ric_trajectory *tr, size_t obstacle, double *acceleration, ric_error *error);
 

@@ -6,7 +6,7 @@
 
 #include "constants.h"
 #include "ricochet/polynomial.h"
-#include "vectorised.h"
+#include "simd.h"
 
 enum {
   CHEBYSHEV_DEGREE = 14 /* largest: conversion to powers loses about as many digits as the last terms are small */

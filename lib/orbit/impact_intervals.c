@@ -119,7 +119,7 @@ static ric_status graze(search *s, const sample *before, const sample *after) {
   mark touch = {.end = RIC_INTERVAL_GRAZING};
   RIC_TRY(find_zero(s, margin_function, s->modes, before->period, after->period, &touch.period));
   impact_modes_margin(s->modes, touch.period, &gap);
-  verdict_write_grazing(touch.reason, sizeof touch.reason, &s->modes->names, &gap);
+  admissibility_write_grazing(touch.reason, sizeof touch.reason, &s->modes->names, &gap);
   emit(s, &touch, before->margin > 0);
   return RIC_OK;
 }
@@ -216,7 +216,7 @@ static mark resonance(const ric_impact_modes *m, double period, bool after) {
     if (m->seen[j] == 0 || !(after ? l * shortest < found.period : l * shortest > found.period))
       continue;
     found.period = l * shortest;
-    verdict_write_mode(found.reason, sizeof found.reason, j, l);
+    admissibility_write_mode(found.reason, sizeof found.reason, j, l);
   }
   return found;
 }

@@ -445,14 +445,14 @@ static void judge(ric_impact_modes *m, const periodic_response *r, ric_orbit *or
   double scale = find_gaps(m, r, m->options.grazing_tol, &gaps), allowed = m->options.residual_tol * scale;
   const orbit_facts f = {.names = m->names, .gaps = &gaps, .slow = gaps.zero * m->fastest};
   fill(m, r, orbit);
-  verdict_clearance(&f, orbit);
+  admissibility_clearance(&f, orbit);
   if (!(orbit->residual <= allowed)) {
-    verdict_violated(orbit, orbit->residual, allowed);
+    admissibility_violated(orbit, orbit->residual, allowed);
   } else if (r->carried || r->free) {
-    verdict_resonant(orbit, r->carried, r->mode, r->harmonic);
-    verdict_add_violation(&f, orbit);
+    admissibility_resonant(orbit, r->carried, r->mode, r->harmonic);
+    admissibility_add_violation(&f, orbit);
   } else {
-    verdict_find(&f, orbit);
+    admissibility_find(&f, orbit);
   }
 }
 
@@ -470,7 +470,7 @@ ric_status ric_impact_modes_orbit(ric_impact_modes *modes, double period, ric_or
   response_find(modes, period, modes->options.resonance_tol, &response);
   bool singular = !(response.condition < modes->options.singular_condition);
   if (singular) {
-    verdict_without_state(orbit, RIC_SINGULAR);
+    admissibility_without_state(orbit, RIC_SINGULAR);
     snprintf(orbit->reason, sizeof orbit->reason,
              "an impulse does not move coordinate %zu at its contact: amplitudes blow up (condition %.3g)", modes->hit,
              response.condition);

@@ -5,7 +5,7 @@
 #include <stdbool.h>
 
 #include "ricochet/impact_modes.h"
-#include "verdict.h"
+#include "admissibility.h"
 
 /* What is kept of a linear system with one obstacle that is hit, and the workspace. */
 

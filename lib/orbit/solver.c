@@ -16,7 +16,7 @@
 #include "numeric/linear.h"
 #include "ricochet/orbit.h"
 #include "unit_cell.h"
-#include "verdict.h"
+#include "admissibility.h"
 
 ric_orbit_options ric_orbit_options_default(void) {
   return (ric_orbit_options){.method = RIC_METHOD_IMPULSE,
@@ -347,7 +347,7 @@ static ric_status solve_on_cell(ric_orbit_solver *s, const ric_chain *chain, con
                 : impulse_solve(&s->impulse, &s->cell, period, o, &state, &solution, error));
   orbit->condition = solution.condition;
   if (solution.singular && !solution.solvable) {
-    verdict_without_state(orbit, RIC_SINGULAR);
+    admissibility_without_state(orbit, RIC_SINGULAR);
     snprintf(orbit->reason, sizeof orbit->reason,
              "equations are singular and have no solution: condition %.3g, limit %.3g", orbit->condition,
              o->singular_condition);

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "numeric/vector.h"
-#include "orbit/verdict.h"
+#include "orbit/admissibility.h"
 #include "shooting.h"
 
 /* A part of the period at which no harmonic of low order is zero. */
@@ -313,7 +313,7 @@ static ric_status look_for_failure(ric_shooting *s, const double *z, ric_orbit *
   if (why)
     snprintf(o->reason, sizeof o->reason, "no motion of this kind: %s", why);
   else if (!(o->residual <= most))
-    verdict_violated(o, o->residual, most);
+    admissibility_violated(o, o->residual, most);
   else
     snprintf(o->reason, sizeof o->reason, "energy is not conserved: the motion closes but for %.3g", added);
   return RIC_OK;
@@ -339,8 +339,8 @@ ric_status shooting_judge(ric_shooting *s, const double *z, double given, ric_or
                          .gaps = &s->gaps.watch,
                          .slow = s->grazing_tol,
                          .out_of_order = s->out_of_order};
-  verdict_clearance(&f, o);
-  verdict_find(&f, o);
+  admissibility_clearance(&f, o);
+  admissibility_find(&f, o);
   return look_for_failure(s, z, o, error);
 }
 

@@ -1,4 +1,4 @@
-/* Cheap looks at polynomials: what they say is so, and of motions they say nearly everything. */
+/* Cheap tests of polynomials: their answers are correct, and they decide nearly all cases in motions. */
 #include "support.h"
 
 #include "numeric/polynomial.h"
@@ -38,7 +38,7 @@ static bool is_least_at_an_end(const double *c) {
   return fmin(c[0], ric_poly_value(c, DEGREE, 1, NULL)) < smallest(c, 1) + 1e-3;
 }
 
-/* Puts the smallest value close to zero, above or below, where looks have to be sharp. */
+/* Puts the smallest value close to zero, above or below, where tests have to be sharp. */
 static void come_near(random_source *source, double *c) {
   double off = pow(10, random_uniform(source, -9, 0)) * (random_uniform(source, 0, 1) < 0.5 ? -1 : 1);
   c[0] += off - smallest(c, 1);

@@ -79,10 +79,10 @@ typedef struct ric_attractor {
   char reason[128]; /* "" when periodic or aperiodic */
 } ric_attractor;
 
-/** Distance of two attractors by as many observed values of each: the Hausdorff distance of the two sets, over the
- *  extent of the second. It is how far the value is off that is farthest from all of the other set.
+/** Distance of two attractors from equal numbers of observed values: the Hausdorff distance of the two sets, divided by
+ *  the extent of the second. It is the largest distance of a value from the other set.
  *  @param a, b  [count] values; sorted here
- *  @returns NaN where a value is not finite; where b has no extent NaN or infinity */
+ *  @returns NaN if a value is not finite; NaN or infinity if b has no extent */
 RIC_API double ric_attractor_distance(double *a, double *b, size_t count);
 
 /* --- of maps ------------------------------------------------------------------------------------------------------ */
@@ -109,11 +109,11 @@ RIC_API const char *ric_map_lanes_name(ric_map_lanes lanes);
 RIC_API bool ric_map_lanes_available(ric_map_lanes lanes);
 /** The widest available variant. */
 RIC_API ric_map_lanes ric_map_lanes_widest(void);
-/** The one that is fastest on this processor for maps of a size: wider is not always faster. Each is run a few times on
- * a trial map, a few milliseconds in all.
- *  @param exponents  Lyapunov exponents that are wanted, at most the size
- *  @param now  the caller's clock, in seconds from any time; NULL: the widest, untried
- *  @returns the narrowest where there is no memory for a trial */
+/** The variant that is fastest on this processor for maps of a size: wider is not always faster. Each variant runs a
+ * few times on a trial map, a few milliseconds in total.
+ *  @param exponents  number of Lyapunov exponents, at most the size
+ *  @param now  the caller's clock in seconds, with any origin; NULL: the widest, without a trial
+ *  @returns the narrowest without memory for a trial */
 RIC_API ric_map_lanes ric_map_lanes_fastest(size_t size, size_t exponents, double (*now)(void *user), void *user);
 
 typedef struct ric_map_runner ric_map_runner;

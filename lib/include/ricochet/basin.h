@@ -1,9 +1,9 @@
 /* Basins of attraction: which of many starts converge to one attractor.
  *
- * Runs from many starts (attractor.h) converge to the same few attractors. Two of them have reached one if both found
- * the same period, and their states with the smallest observed number, `lowest`, agree: on a periodic attractor that
- * state does not depend on the start, nor on where along the cycle a run has ended. Attractors without a period have no
- * such state; all of them count as one. */
+ * Runs from many starts (attractor.h) converge to the same few attractors. Two runs have reached the same attractor if
+ * they found the same period and their states with the smallest observed number, `lowest`, agree: on a periodic
+ * attractor that state depends neither on the start nor on the phase at which a run ended. Attractors without a period
+ * have no such state; all of them count as one. */
 #ifndef RICOCHET_BASIN_H
 #define RICOCHET_BASIN_H
 
@@ -14,9 +14,9 @@
 RIC_BEGIN_DECLARATIONS
 
 typedef struct ric_basin_options {
-  size_t limit;    /* most attractors that are distinguished, default 1000: every run is compared with all of them */
-  double same_tol; /* 1e-4, relative to the largest number of the two states: far more than what is left of a transient,
-                      far less than the distance of two cycles */
+  size_t limit; /* largest number of distinguished attractors, default 1000: every run is compared with all of them */
+  double same_tol; /* 1e-4, relative to the largest number of the two states: much more than the remainder of a
+                      transient, much less than the distance of two cycles */
 } ric_basin_options;
 
 RIC_API ric_basin_options ric_basin_options_default(void);
@@ -27,10 +27,10 @@ enum {
   RIC_BASIN_OTHER = -2 /* an attractor beyond the limit */
 };
 
-/** An attractor, and how many of the starts converge to it. */
+/** An attractor, and the number of starts that converge to it. */
 typedef struct ric_basin_attractor {
-  size_t period;        /* 0: all that have none */
-  size_t first, starts; /* the first start that converges to it, in the order in which they were added; how many do */
+  size_t period;        /* 0: all attractors without a period */
+  size_t first, starts; /* the first start that converges to it, in the order of addition; their number */
   const double *lowest; /* [size] of that first one; valid until the basin is destroyed */
 } ric_basin_attractor;
 
@@ -43,7 +43,7 @@ RIC_API ric_status ric_basin_create(size_t size, const ric_basin_options *option
 RIC_API void ric_basin_destroy(ric_basin **basin);
 
 /** Adds the run of a start.
- *  @param run  of which kind, period and lowest [size] count; lowest may be NULL where the run has no period
+ *  @param run  of which kind, period and lowest [size] count; lowest may be NULL if the run has no period
  *  @param label  set to the index of its attractor, RIC_BASIN_NONE or RIC_BASIN_OTHER
  *  @returns RIC_EINVAL for a periodic run without `lowest`; RIC_ENOMEM */
 RIC_API ric_status ric_basin_add(ric_basin *basin, const ric_attractor *run, int64_t *label, ric_error *error);

@@ -3,15 +3,14 @@
  * A family is followed in segments. The first one starts at a solution. Special points of a segment where other
  * families begin add segments to a queue:
  *
- *   grazing, impact_lost   (`cross`) the family with one contact more, or less, into the side where it exists
- *   branch_point           (`branches`) both halves of the other branch of the same equations
- *   period_doubling        (`branches`) the family of twice the period; not of even motions, of which both halves of
- *                          the motion change
+ *   grazing, impact_lost   (`cross`) the family with one contact more, or less, towards the side where it exists
+ *   branch_point           (`branches`) both halves of the other branch of the same equations period_doubling
+ *   (`branches`) the family of twice the period; not for even motions, of which both halves would change
  *
  * Each segment is a continuation run of its own (family.h), within the bounds and with the options of the first family,
- * until the queue is empty or as many segments as allowed have been followed. Two families find the point at which they
- * meet from either side: only the first one to find it adds a segment. A family that cannot be made, or does not start,
- * is a segment with its reason. */
+ * until the queue is empty or the largest number of segments has been followed. Two families detect their common point
+ * from either side: only the first detection adds a segment. A family that cannot be created or started is a segment
+ * with a reason. */
 #ifndef RICOCHET_EXPLORE_H
 #define RICOCHET_EXPLORE_H
 
@@ -40,7 +39,7 @@ RIC_API const char *ric_explore_origin_name(ric_explore_origin origin);
 typedef struct ric_explore_options {
   bool cross;            /* default false */
   bool branches;         /* default false */
-  size_t segments;       /* most of them, >= 1, the first one included; default 16 */
+  size_t segments;       /* largest number, >= 1, the first one included; default 16 */
   double same_point_tol; /* 1e-6: two special points are one where families meet if parameter, period and energy agree
                             to this, relative to 1 + their size: special points are located to 1e-10 on either side,
                             and families start with steps of 1e-3 */
@@ -53,14 +52,14 @@ typedef struct ric_explore_segment {
   size_t index; /* from 0, in the order in which they are followed */
   ric_explore_origin origin;
   size_t special;     /* the special point at which it begins, counted from 0 over all segments; SIZE_MAX: the start */
-  ric_family *family; /* NULL where none could be made */
+  ric_family *family; /* NULL if it could not be created */
   /* Known when it has ended: */
-  ric_status status;  /* RIC_OK; else the segment has no points or broke off, and the reason says why */
-  const char *reason; /* "" when the end of the run speaks for itself */
-  ric_curve_run run;  /* zeros where it was not begun */
+  ric_status status;  /* RIC_OK; otherwise the segment has no points or failed, and the reason says why */
+  const char *reason; /* "" if the end of the run needs no explanation */
+  ric_curve_run run;  /* zeros if it was not started */
 } ric_explore_segment;
 
-/** What is reported to the caller; non-zero ends the exploration, which is no error. Functions may be NULL. */
+/** Callbacks of the caller; a non-zero return value ends the exploration, which is no error. Functions may be NULL. */
 typedef struct ric_explore_visitor {
   /** Every point of a segment in order, as ric_family_follow; `reason` and `run` of the segment are not known yet. The
    *  family's special points may be traced in two parameters here. */
@@ -74,7 +73,7 @@ typedef struct ric_explore_visitor {
  *  @param family  borrowed; its system is changed by the families that are followed
  *  @param z  [unknowns] solution at the parameter, as ric_family_follow; copied
  *  @param options  NULL for the defaults
- *  @returns RIC_OK however segments end; RIC_EINVAL for options out of range; RIC_ESTOPPED; RIC_ENOMEM */
+ *  @returns RIC_OK for every end of segments; RIC_EINVAL for options out of range; RIC_ESTOPPED; RIC_ENOMEM */
 RIC_API ric_status ric_family_explore(ric_family *family, const double *z, double parameter,
                                       const ric_explore_options *options, const ric_explore_visitor *visitor,
                                       ric_error *error);

@@ -66,10 +66,10 @@ RIC_API ric_status ric_grazing_find(ric_family *family, double *z, double parame
 
 #define RIC_GRAZING_SEARCH_LIST(X)                                                                                     \
   X(RIC_GRAZING_SEARCH_FOUND, "found")                                                                                 \
-  X(RIC_GRAZING_SEARCH_NONE, "none")                 /* the family has reached its end without grazing an obstacle */  \
-  X(RIC_GRAZING_SEARCH_DEGENERATE, "degenerate")     /* it grazes in a way that the theory leaves out */               \
+  X(RIC_GRAZING_SEARCH_NONE, "none")                 /* the family ended without a grazing point */                    \
+  X(RIC_GRAZING_SEARCH_DEGENERATE, "degenerate")     /* a grazing point that the theory excludes */                    \
   X(RIC_GRAZING_SEARCH_FAILED, "failed")             /* the family, or its grazing point, cannot be computed */        \
-  X(RIC_GRAZING_SEARCH_FAILED_START, "failed_start") /* the family does not begin */
+  X(RIC_GRAZING_SEARCH_FAILED_START, "failed_start") /* the family cannot be started */
 
 typedef enum ric_grazing_search_outcome {
 #define X(name, text) name,
@@ -82,17 +82,18 @@ typedef enum ric_grazing_search_outcome {
 typedef struct ric_grazing_search {
   ric_grazing_search_outcome outcome;
   char reason[256]; /* "" when found */
-  double reached;   /* parameter that the family has reached */
+  double reached;   /* last parameter of the family */
   bool ended;       /* the family has ended without grazing: the run says how */
   ric_curve_run run;
-  /* The grazing point as the family locates it, also a degenerate one; NaN and SIZE_MAX without one: */
+  /* The grazing point located by the family, degenerate or not; NaN and SIZE_MAX without one: */
   double parameter, period, time;
   size_t obstacle;
 } ric_grazing_search;
 
-/** Follows a family from a solution to the first motion that grazes and passes no obstacle elsewhere. As
- *  ric_grazing_find, but without the grazing points of inadmissible motions, and with an outcome in place of an error.
- *  @param grazing  set when it is found; else of no use
+/** Follows a family from a solution to its first grazing point at which the motion passes through no obstacle
+ *  elsewhere. Unlike ric_grazing_find it ignores grazing points of inadmissible motions and reports an outcome instead
+ *  of an error.
+ *  @param grazing  set if found; otherwise undefined
  *  @returns RIC_OK with an outcome; RIC_EINVAL for even motions and options out of range; RIC_ESTOPPED, RIC_ENOMEM */
 RIC_API ric_status ric_grazing_search_along(ric_family *family, double *z, double parameter,
                                             const ric_grazing_options *options, ric_grazing_search *search,

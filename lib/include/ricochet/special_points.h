@@ -1,13 +1,15 @@
-/* Special points along a sweep: where the families of a pattern on a chain end, meet others or lose stability.
+/* Special points along a sweep: where the families of a pattern on a chain end, branch or lose stability.
  *
- * Along the coupling gamma or the period T three kinds of parameter matter, each with a search of its own:
+ * Along the coupling gamma or the period T there are three kinds of special parameters, each with its own search:
  *
- *   resonance  a mode has whole oscillations in a period (resonance.h): the contact equations blow up there
- *   singular   the contact matrix is singular (ric_orbit_singular_points): the impulses are not unique, or infinite
- *   critical   multipliers leave the unit circle or come back (ric_orbit_critical_points), by the kind of ric_critical
+ *   resonance  a mode has an integer number of oscillations per period (resonance.h): the contact equations blow up
+ *   there singular   the contact matrix is singular (ric_orbit_singular_points): the impulses are not unique, or
+ *   infinite critical   multipliers leave the unit circle or return to it (ric_orbit_critical_points), by the kind of
+ *   ric_critical
  *
- * Here they are one list, ordered by parameter, each with the outcome of the orbit exactly there: most resonances do
- * nothing to a pattern that does not excite the mode, and not every zero of the determinant is driven. */
+ * Here they are one list, ordered by parameter, each with the outcome of the orbit exactly there: most resonances have
+ * no effect on a pattern that does not excite the mode, and the equations at a zero of the determinant may be solvable.
+ */
 #ifndef RICOCHET_SPECIAL_POINTS_H
 #define RICOCHET_SPECIAL_POINTS_H
 
@@ -42,12 +44,12 @@ typedef struct ric_special_point {
   size_t mode;            /* of a resonance; SIZE_MAX */
   unsigned harmonic;      /* oscillations of the mode in a period; 0 */
   ric_complex multiplier; /* of a critical point, on the circle, im >= 0; NaN */
-  int change;             /* of a critical point: +1 where the number of multipliers outside grows with the parameter,
-                             -1 where it falls; 0 */
-  double uncertainty;     /* of a critical parameter; NaN */
+  int change; /* of a critical point: +1 if the number of multipliers outside increases with the parameter, -1 if it
+                 decreases; 0 */
+  double uncertainty; /* of a critical parameter; NaN */
 } ric_special_point;
 
-/** Where special points are searched. Borrowed. */
+/** Range of the search for special points. Borrowed. */
 typedef struct ric_special_range {
   const ric_chain *chain;
   const ric_pattern *pattern;
@@ -58,9 +60,9 @@ typedef struct ric_special_range {
 } ric_special_range;
 
 /** Reports the special points of a range, by parameter, then kind, then mode.
- *  @param solver  its options' method and poll count
+ *  @param solver  the method and poll of its options are used
  *  @param point  non-zero ends it
- *  @returns RIC_OK, also when `point` has ended it; as ric_chain_resonances, ric_orbit_singular_points,
+ *  @returns RIC_OK, also if `point` has ended it; as ric_chain_resonances, ric_orbit_singular_points,
  *           ric_orbit_critical_points and ric_orbit_solve; RIC_ENOMEM */
 RIC_API ric_status ric_orbit_special_points(ric_orbit_solver *solver, const ric_special_range *range,
                                             int (*point)(const ric_special_point *point, void *user), void *user,

@@ -2,8 +2,8 @@
  *
  * However an orbit was found, three questions decide: does the motion return to its initial state (closure), does
  * every predicted impact happen at its time on its obstacle, and is there no other impact? The run does not depend on
- * the method that found the orbit. Impacts, with times and obstacles, and the period are those of the orbit; the run
- * begins at any time that is not one of an impact. */
+ * the method that found the orbit. The orbit provides the period and the predicted impacts with their times and
+ * obstacles; the run starts at any time that is not that of an impact. */
 #ifndef RICOCHET_VERIFY_H
 #define RICOCHET_VERIFY_H
 
@@ -48,10 +48,10 @@ typedef struct ric_verify_options {
 
 RIC_API ric_verify_options ric_verify_options_default(void);
 
-/** Verifies a periodic motion of any system. A run that cannot begin, or ends early, is `run_failed`; the outcome of
+/** Verifies a periodic motion of any system. A run that cannot start, or ends early, is `run_failed`; the outcome of
  * the orbit and its arrays of states are not read.
  *  @param orbit  its period, impact_time and impact_obstacle are read
- *  @param start  time of the state, farther than impact_time_tol from every impact
+ *  @param start  time of the state, with a distance above impact_time_tol from every impact
  *  @param q, u  [n], [m] state there
  *  @param options  NULL for the defaults
  *  @returns RIC_OK with a result; RIC_EINVAL for an orbit of other numbers of coordinates or speeds, a period that is

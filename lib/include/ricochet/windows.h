@@ -1,17 +1,18 @@
 /* Windows of a diagram: the intervals of a parameter p in which the attractor keeps its period.
  *
- * A line is a row of parameters with the attractor that a run has reached at each (attractor.h). Consecutive points
- * whose attractors have one period, and as many impacts in it, are a window. Its edges are found twice:
+ * A line is a sequence of parameters with the attractor that a run has reached at each (attractor.h). Consecutive
+ * points whose attractors have the same period and number of impacts per period form a window. Its edges are found in
+ * two ways:
  *
- *   on the attractor  between the last point inside and the first one outside runs halve the interval until it is
- *                     narrow: a bracket. Transients near an edge are arbitrarily long, so that a bracket says where
- *                     runs of this length change, and no more;
- *   on the cycle      the cycle is solved for and followed to the special point at which it stops being stable or
- *                     admissible (cycle_window.h, motion_window.h). That edge is exact.
+ *   on the attractor  runs bisect the interval between the last point inside and the first one outside: a bracket.
+ *                     Transients near an edge are arbitrarily long, so a bracket only shows where runs of this length
+ *                     change;
+ *   on the cycle      the cycle is computed and continued to the special point at which it loses stability or
+ *                     admissibility (cycle_window.h, motion_window.h). That edge is exact.
  *
- * Near a flip the attractor is slow: a run finds no period, or the double one. What the caller locates on the cycle
- * settles it: a run of points that lies in a window that is located already, with its period or a multiple of it, is no
- * window of its own. [FN97] section 6. */
+ * Near a flip convergence is slow: a run finds no period, or twice the period. The window located on the cycle decides:
+ * consecutive points inside a located window, with its period or a multiple of it, are no window of their own. [FN97]
+ * section 6. */
 #ifndef RICOCHET_WINDOWS_H
 #define RICOCHET_WINDOWS_H
 
@@ -42,20 +43,20 @@ typedef struct ric_window {
 /** A line of attractors. Arrays and functions are borrowed. */
 typedef struct ric_window_line {
   size_t points;
-  const double *p;                 /* [points] rising or falling */
+  const double *p;                 /* [points] increasing or decreasing */
   const ric_attractor *attractors; /* [points] of which kind, period, impacts and z [size], the end of the run, count */
   size_t size;                     /* numbers of a state */
   size_t measured;                 /* iterates over which `impacts` is averaged (ric_attractor_options) */
-  bool follow; /* each run has started where the one before it ended: runs that bracket an edge do the same */
+  bool follow; /* each run started from the end of the previous one: runs that bracket an edge do the same */
   /** Runs to the attractor at a parameter, with the options of the line.
-   *  @param start  [size]; NULL: from where runs start that do not follow one another
-   *  @param attractor  its z [size] is to be set to the end of the run, its other arrays are NULL
+   *  @param start  [size]; NULL: the start of runs that do not follow each other
+   *  @param attractor  set; its z [size] to the end of the run; its other arrays are NULL
    *  @returns a status other than RIC_OK to end the search with it */
   ric_status (*run)(double p, const double *start, ric_attractor *attractor, void *user, ric_error *error);
   /** Locates the edges of a window on the cycle: ric_window_locate_cycle or _motion, say.
    *  @param z  [size] a state on the attractor at the point of the window
    *  @param low, high  bounds of the search for edges
-   *  @param window  what stands above `On the cycle`, but its impacts, is set
+   *  @param window  the fields above `On the cycle`, except impacts, are set
    *  @returns RIC_ESTOPPED or RIC_ENOMEM to end the search with it; others leave the window not located, with the
    *           message as the reason */
   ric_status (*locate)(const double *z, double low, double high, ric_window *window, void *user, ric_error *error);

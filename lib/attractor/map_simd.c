@@ -1,5 +1,5 @@
 /* Blocks of maps side by side, and the variants of the kernel that iterates them. */
-#include "map_kernels.h"
+#include "map_simd.h"
 
 #include <float.h>
 #include <math.h>
@@ -118,7 +118,7 @@ typedef uint64_t __attribute__((may_alias)) bits_one;
 typedef uint64_t bits_one;
 #endif
 
-#include "map_lanes.inc"
+#include "map_simd.inc"
 
 #ifdef RIC_WIDE /* the compiler makes functions for processors other than the one at hand */
 #include <immintrin.h>
@@ -140,7 +140,7 @@ typedef uint64_t bits_eight __attribute__((vector_size(64), may_alias));
 #define ANY(mask)       (_mm256_movemask_pd(mask) != 0)
 #define ROOT(x)         _mm256_sqrt_pd(x)
 #define AS_LANE(bits)   ((lane_four)(bits))
-#include "map_lanes.inc"
+#include "map_simd.inc"
 
 #define LANE            lane_eight
 #define LANES           8
@@ -154,7 +154,7 @@ typedef uint64_t bits_eight __attribute__((vector_size(64), may_alias));
 #define ANY(mask)       ((mask) != 0)
 #define ROOT(x)         _mm512_sqrt_pd(x)
 #define AS_LANE(bits)   ((lane_eight)(bits))
-#include "map_lanes.inc"
+#include "map_simd.inc"
 #endif
 
 map_kernel map_kernel_of(ric_map_lanes lanes) {

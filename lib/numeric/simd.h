@@ -4,8 +4,8 @@
  * perform the same operations in the same order, without fused multiplications, so results are equal in every bit. A
  * function marked RIC_WIDE, if the compiler supports it, is for processors with registers of eight numbers
  * (ric_has_wide()): types of that size are slow on all others. */
-#ifndef RICOCHET_VECTORISED_H
-#define RICOCHET_VECTORISED_H
+#ifndef RICOCHET_SIMD_H
+#define RICOCHET_SIMD_H
 
 #if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && defined(__gnu_linux__) &&                       \
     !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)

@@ -4,13 +4,13 @@
  * whose chains of operations hide how long one takes. Coefficients that are zero in all maps of a block are left out,
  * those of L on the diagonal never: so a number that is not finite stays, and what is left out changes the sign of
  * zeros at most, on which no other number depends. */
-#ifndef RICOCHET_MAP_KERNELS_H
-#define RICOCHET_MAP_KERNELS_H
+#ifndef RICOCHET_MAP_SIMD_H
+#define RICOCHET_MAP_SIMD_H
 
 #include <stddef.h>
 #include <stdint.h>
 
-#include "numeric/vectorised.h"
+#include "numeric/simd.h"
 #include "ricochet/attractor.h"
 
 typedef struct map_block {

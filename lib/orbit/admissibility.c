@@ -1,6 +1,6 @@
 /* The outcome of an orbit and its reason in words, however the orbit was found; and what comes before that for orbits
  * of chains: their gaps on the segments of their motion, and modes at resonance. */
-#include "verdict.h"
+#include "admissibility.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -75,12 +75,12 @@ __attribute__((format(printf, 2, 3))) static void add(ric_orbit *o, const char *
   va_end(list);
 }
 
-void verdict_write_mode(char *text, size_t bytes, size_t mode, double harmonic) {
+void admissibility_write_mode(char *text, size_t bytes, size_t mode, double harmonic) {
   snprintf(text, bytes, "mode %zu is at resonance (harmonic %.0f): the impulses vanish, the orbit is a linear mode",
            mode, harmonic);
 }
 
-void verdict_write_grazing(char *text, size_t bytes, const obstacle_names *names, const gap_found *gap) {
+void admissibility_write_grazing(char *text, size_t bytes, const obstacle_names *names, const gap_found *gap) {
   char words[PHRASE_BYTES];
   snprintf(text, bytes, "%s at t = %.6g (gap %.2g)", phrase(names, gap->obstacle, "touches", words), gap->time,
            gap->value);
@@ -149,7 +149,7 @@ static void explain_violation(const orbit_facts *f, ric_orbit *o) {
     explain_passing(f, o);
 }
 
-void verdict_clearance(const orbit_facts *f, ric_orbit *o) {
+void admissibility_clearance(const orbit_facts *f, ric_orbit *o) {
   const gap_found *g = &f->gaps->free;
   bool any = g->obstacle != NO_OBSTACLE;
   o->clearance = any ? g->value : NAN;
@@ -162,7 +162,7 @@ static bool is_violated(const orbit_facts *f, const ric_orbit *o) {
   return f->out_of_order || first_pulling(f, o) != SIZE_MAX || gap_watch_least(f->gaps)->value < -f->gaps->zero;
 }
 
-void verdict_find(const orbit_facts *f, ric_orbit *o) {
+void admissibility_find(const orbit_facts *f, ric_orbit *o) {
   size_t weakest = weakest_impact(o);
   gap_found least = *gap_watch_least(f->gaps);
   char words[PHRASE_BYTES];
@@ -178,35 +178,35 @@ void verdict_find(const orbit_facts *f, ric_orbit *o) {
   } else if (least.value <= f->gaps->zero) {
     o->outcome = RIC_GRAZING;
     least.time = time_in_period(o, least.time);
-    verdict_write_grazing(o->reason, sizeof o->reason, &f->names, &least);
+    admissibility_write_grazing(o->reason, sizeof o->reason, &f->names, &least);
   }
 }
 
-void verdict_add_violation(const orbit_facts *f, ric_orbit *o) {
+void admissibility_add_violation(const orbit_facts *f, ric_orbit *o) {
   if (!is_violated(f, o))
     return;
   add(o, "; inadmissible, ");
   explain_violation(f, o);
 }
 
-void verdict_violated(ric_orbit *o, double residual, double allowed) {
+void admissibility_violated(ric_orbit *o, double residual, double allowed) {
   o->outcome = RIC_FAILED;
   snprintf(o->reason, sizeof o->reason, "equations are violated by %.3g, allowed %.3g", residual, allowed);
 }
 
-void verdict_resonant(ric_orbit *o, bool carried, size_t mode, unsigned harmonic) {
+void admissibility_resonant(ric_orbit *o, bool carried, size_t mode, unsigned harmonic) {
   o->outcome = carried ? RIC_GRAZING : RIC_RESONANT;
   o->mode = (long long)mode;
   o->harmonic = harmonic;
   if (carried)
-    verdict_write_mode(o->reason, sizeof o->reason, mode, harmonic);
+    admissibility_write_mode(o->reason, sizeof o->reason, mode, harmonic);
   else
     snprintf(o->reason, sizeof o->reason,
              "mode %zu is at resonance (harmonic %u) and vanishes at the contacts: its amplitude is free", mode,
              harmonic);
 }
 
-void verdict_without_state(ric_orbit *o, ric_outcome outcome) {
+void admissibility_without_state(ric_orbit *o, ric_outcome outcome) {
   o->outcome = outcome;
   for (size_t i = 0; i < 2 * (o->particles + o->speeds) + 3 * o->impacts; i++)
     o->q[i] = NAN; /* the one block behind all arrays of numbers */
@@ -215,7 +215,7 @@ void verdict_without_state(ric_orbit *o, ric_outcome outcome) {
 }
 
 void ric_orbit_fail(ric_orbit *o, const char *reason) {
-  verdict_without_state(o, RIC_FAILED);
+  admissibility_without_state(o, RIC_FAILED);
   o->condition = NAN;
   o->mode = -1;
   o->harmonic = 0;
@@ -422,7 +422,7 @@ static ric_status judge_modes(const unit_cell *whole, const border_mode *modes, 
     RIC_TRY(resonant_free(whole, modes, count, decided, &which, error));
   *decided = *decided || carried;
   if (*decided)
-    verdict_resonant(orbit, carried, modes[which].mode, modes[which].harmonic);
+    admissibility_resonant(orbit, carried, modes[which].mode, modes[which].harmonic);
   return RIC_OK;
 }
 
@@ -457,9 +457,9 @@ ric_status chain_verdict(ric_orbit_solver *s, const ric_chain *chain, const ric_
   RIC_TRY(find_gaps(&s->motion, &s->cell, state, o->clearance_tol * scale / 2, zero, orbit->period, &gaps, &mismatch,
                     o->poll, error));
   orbit->residual = isnan(mismatch) ? NAN : fmax(mismatch, largest_contact_error(&s->cell, state));
-  verdict_clearance(&f, orbit);
+  admissibility_clearance(&f, orbit);
   if (!(orbit->residual <= o->residual_tol * scale)) {
-    verdict_violated(orbit, orbit->residual, o->residual_tol * scale);
+    admissibility_violated(orbit, orbit->residual, o->residual_tol * scale);
     return RIC_OK;
   }
   bool decided;
@@ -471,10 +471,10 @@ ric_status chain_verdict(ric_orbit_solver *s, const ric_chain *chain, const ric_
              "equations are singular (condition %.3g) but solvable: the orbit is one of many", orbit->condition);
   }
   if (decided) {
-    verdict_add_violation(&f, orbit);
+    admissibility_add_violation(&f, orbit);
     return RIC_OK;
   }
-  verdict_find(&f, orbit);
+  admissibility_find(&f, orbit);
   if (o->method == RIC_METHOD_IMPULSE)
     mention_condition(orbit);
   return RIC_OK;

@@ -1,6 +1,6 @@
 /* The outcome of an orbit and its reason in words, however the orbit was found. Internal to the library. */
-#ifndef RICOCHET_VERDICT_H
-#define RICOCHET_VERDICT_H
+#ifndef RICOCHET_ADMISSIBILITY_H
+#define RICOCHET_ADMISSIBILITY_H
 
 #include "impact/gap_watch.h"
 #include "ricochet/orbit.h"
@@ -23,28 +23,28 @@ typedef struct orbit_facts {
 } orbit_facts;
 
 /** Sets the clearance: the smallest gap of what the orbit does not hit. */
-void verdict_clearance(const orbit_facts *f, ric_orbit *orbit);
+void admissibility_clearance(const orbit_facts *f, ric_orbit *orbit);
 
 /** Sets the outcome of an orbit that satisfies its equations: `admissible`; `inadmissible`, with what is violated first
  *  in the period; `grazing`, with what is zero.
  *  @param orbit  its period and impacts are read */
-void verdict_find(const orbit_facts *f, ric_orbit *orbit);
+void admissibility_find(const orbit_facts *f, ric_orbit *orbit);
 
 /** Adds to a reason what makes the orbit inadmissible, if anything does: for outcomes that leave that open. */
-void verdict_add_violation(const orbit_facts *f, ric_orbit *orbit);
+void admissibility_add_violation(const orbit_facts *f, ric_orbit *orbit);
 
 /** Makes it `failed`: a residual is larger than allowed. */
-void verdict_violated(ric_orbit *orbit, double residual, double allowed);
+void admissibility_violated(ric_orbit *orbit, double residual, double allowed);
 
 /** Makes it `grazing`, a linear mode that reaches the obstacles without impulses, or `resonant`, a mode that vanishes
  * at all contacts; sets the mode. */
-void verdict_resonant(ric_orbit *orbit, bool carried, size_t mode, unsigned harmonic);
+void admissibility_resonant(ric_orbit *orbit, bool carried, size_t mode, unsigned harmonic);
 
 /** Text of the first kind of resonance, and of a gap that is zero. */
-void verdict_write_mode(char *text, size_t bytes, size_t mode, double harmonic);
-void verdict_write_grazing(char *text, size_t bytes, const obstacle_names *names, const gap_found *gap);
+void admissibility_write_mode(char *text, size_t bytes, size_t mode, double harmonic);
+void admissibility_write_grazing(char *text, size_t bytes, const obstacle_names *names, const gap_found *gap);
 
 /** Makes an orbit without a state: NaN everywhere, with this outcome. The reason is the caller's. */
-void verdict_without_state(ric_orbit *orbit, ric_outcome outcome);
+void admissibility_without_state(ric_orbit *orbit, ric_outcome outcome);
 
 #endif
