@@ -38,6 +38,33 @@ static table laid_out(void) {
   return t;
 }
 
+/* A row that points to what holds its numbers. */
+typedef struct pointing {
+  const sample *of;
+  double own;
+} pointing;
+
+static void columns_of_what_a_row_points_to_are_written(void **state) {
+  (void)state;
+  static const column list[] = {{.name = "own", NUMBER(pointing, own)},
+                                {.name = "energy", NUMBER(sample, energy), OF(pointing, of)},
+                                {.name = "reason", TEXT(sample, reason, 8), OF(pointing, of)},
+                                {.name = "q", NUMBERS(sample, q), .axes = {"particle"}, OF(pointing, of)}};
+  const table_axis axis = {"particle", 2};
+  table t = {0};
+  double row[5];
+  table_add(&t, &(column_list){"samples", "task", COLUMNS(list)}, &axis, 1);
+  assert_int_equal(table_lay_out(&t), sizeof row);
+  const sample of = {.energy = 3, .reason = "why", .q = (double[]){-1, 4}};
+  row_fill(&t, (unsigned char *)row, &(pointing){.of = &of, .own = 0.5});
+  assert_memory_equal(row, ((double[]){0.5, 3}), 2 * sizeof *row);
+  assert_memory_equal(row + 2, "why\0\0\0\0", 8);
+  assert_memory_equal(row + 3, ((double[]){-1, 4}), 2 * sizeof *row);
+  pointing back = {.of = &of};
+  row_load(&t, (unsigned char *)row, &back);
+  assert_true(back.of == &of && back.own == 0.5);
+}
+
 static const double positions[] = {0.5, -1, 7};
 static const int64_t periods[] = {4, -9};
 static const unsigned char kinds[] = {2, 1};
@@ -124,6 +151,7 @@ static void sizes_do_not_overflow(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(columns_of_what_a_row_points_to_are_written),
       cmocka_unit_test(what_is_stored_is_loaded),
       cmocka_unit_test(several_values_are_filled_in_their_places),
       cmocka_unit_test(rows_have_no_bytes_of_what_was_there),

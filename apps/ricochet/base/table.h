@@ -42,8 +42,9 @@ typedef struct column {
   size_t name_count;
   const char *units; /* NULL: "1", dimensionless */
   const char *long_name, *source;
-  const char *doc;                                     /* meaning on the schema page; NULL: the long name says it all */
-  size_t member;                                       /* offset in the struct of a row; what it is: see below */
+  const char *doc; /* meaning on the schema page; NULL: the long name says it all */
+  size_t member;   /* offset in the struct of a row; what it is: see below */
+  size_t behind;   /* 0: the row's own; else 1 + the offset of a pointer in the row to the struct with the member */
   column_attribute attributes[COLUMN_MOST_ATTRIBUTES]; /* the first ones that have a name */
   size_t offset; /* of the first value in a row; set by table_lay_out, a multiple of 8 */
 } column;
@@ -65,6 +66,10 @@ typedef struct column {
 #define WORD(row, m, list) WORDS_OF(list), .member = COLUMN_MEMBER(row, m, int, unsigned)
 /* Words with further axes are bytes. */
 #define WORDS(row, m, list) WORDS_OF(list), .member = COLUMN_MEMBER(row, m, unsigned char *, const unsigned char *)
+
+/* The member is one of a struct that the row points to: COLUMN("energy", NUMBER(ric_orbit, energy), ..., OF(orbits_row,
+ * orbit)). Such a column is written, not read. */
+#define OF(row, pointer) .behind = 1 + offsetof(row, pointer)
 
 /* A line of a list of columns: name, type and member, what it is, its source, and what else there is to say. */
 #define COLUMN(column_name, type_and_member, meaning, ...)                                                             \

@@ -22,50 +22,54 @@ static const char *const stability_names[RIC_STABILITIES] = {
 #undef X
 };
 
+#define OF_ORBIT        OF(orbits_row, orbit)
+#define OF_VERIFICATION OF(orbits_row, verification)
+
 /* The columns: those of every orbit, of the verifier, of the multipliers, of Ritz's method. */
 static const column columns[] = {
-    COLUMN("outcome", WORD(orbits_row, outcome, orbit_outcome_names), "outcome of the orbit", .source = "[JAP] (9)",
-           .doc = "outcome of the orbit; states of `singular` and `failed` tasks are NaN"),
+    COLUMN("outcome", WORD(ric_orbit, outcome, orbit_outcome_names), "outcome of the orbit", OF_ORBIT,
+           .source = "[JAP] (9)", .doc = "outcome of the orbit; states of `singular` and `failed` tasks are NaN"),
     COLUMN("reason", TEXT(orbits_row, reason, RIC_REASON_BYTES), "which particle, when, by how much",
            .source = "[JAP] (9)",
            .doc = "which particle, when, by how much; empty if admissible and, with `verify: true`, verified"),
-    COLUMN("q", NUMBERS(orbits_row, q), "position at t = 0+", .source = "[JAP] (7)-(8)", .axes = {"particle"},
+    COLUMN("q", NUMBERS(ric_orbit, q), "position at t = 0+", OF_ORBIT, .source = "[JAP] (7)-(8)", .axes = {"particle"},
            .doc = "displacement at t = 0+ (absent with `states: false`); with `method: ritz` of the approximation"),
-    COLUMN("v", NUMBERS(orbits_row, v), "velocity at t = 0+", .source = "[JAP] (7)-(8)", .axes = {"particle"},
+    COLUMN("v", NUMBERS(ric_orbit, v), "velocity at t = 0+", OF_ORBIT, .source = "[JAP] (7)-(8)", .axes = {"particle"},
            .doc = "velocity there, likewise"),
-    COLUMN("impulse", NUMBERS(orbits_row, impulse), "velocity jump of each impact, at_start then at_half",
+    COLUMN("impulse", NUMBERS(ric_orbit, impulse), "velocity jump of each impact, at_start then at_half", OF_ORBIT,
            .source = "[JAP] (3)", .axes = {"impact"}),
-    COLUMN("energy", NUMBER(orbits_row, energy), "total energy", .source = "[JAP] (1)",
+    COLUMN("energy", NUMBER(ric_orbit, energy), "total energy", OF_ORBIT, .source = "[JAP] (1)",
            .doc = "total energy; with `method: ritz` of the approximation"),
-    COLUMN("residual", NUMBER(orbits_row, residual), "largest violation of the orbit's equations",
+    COLUMN("residual", NUMBER(ric_orbit, residual), "largest violation of the orbit's equations", OF_ORBIT,
            .source = "[JAP] (7)-(8)",
            .doc = "largest violation of the contact conditions and of the equations of motion"),
-    COLUMN("clearance", NUMBER(orbits_row, clearance), "smallest gap of the particles that the pattern leaves free",
-           .source = "[JAP] (9)",
+    COLUMN("clearance", NUMBER(ric_orbit, clearance), "smallest gap of the particles that the pattern leaves free",
+           OF_ORBIT, .source = "[JAP] (9)",
            .doc = "smallest gap of the particles that the pattern leaves free and that have a floor; within 1e-12 of "
                   "the true one, relative to the largest displacement; NaN when there is none"),
-    COLUMN("clearance_time", NUMBER(orbits_row, clearance_time), "time of the smallest gap, in [0, T/2]",
+    COLUMN("clearance_time", NUMBER(ric_orbit, clearance_time), "time of the smallest gap, in [0, T/2]", OF_ORBIT,
            .source = "[JAP] (9)", .doc = "time of the smallest gap, in [0, T/2]; NaN when there is none"),
-    COLUMN("clearance_particle", INTEGER(orbits_row, clearance_particle),
-           "particle of the smallest gap, -1 when every particle is in the pattern", .source = "[JAP] (9)",
+    COLUMN("clearance_particle", INTEGER(ric_orbit, clearance_particle),
+           "particle of the smallest gap, -1 when every particle is in the pattern", OF_ORBIT, .source = "[JAP] (9)",
            .doc = "particle of the smallest gap; -1 when there is none"),
-    COLUMN("condition", NUMBER(orbits_row, condition), "condition number of the equations solved",
+    COLUMN("condition", NUMBER(ric_orbit, condition), "condition number of the equations solved", OF_ORBIT,
            .source = "[JAP] (11)",
            .doc = "condition number: about the orbit's amplitude over the floor's distance (impulse), of the matrix of "
                   "(11) (dense)"),
-    COLUMN("mode", INTEGER(orbits_row, mode), "resonant mode of the outcomes grazing and resonant, else -1",
+    COLUMN("mode", INTEGER(ric_orbit, mode), "resonant mode of the outcomes grazing and resonant, else -1", OF_ORBIT,
            .source = "[JAP] (12)"),
-    COLUMN("harmonic", INTEGER(orbits_row, harmonic), "oscillations of that mode per period, else 0",
+    COLUMN("harmonic", INTEGER(ric_orbit, harmonic), "oscillations of that mode per period, else 0", OF_ORBIT,
            .source = "[JAP] (12)"),
 };
 
 static const column verifier_columns[] = {
-    COLUMN("verified", WORD(orbits_row, verified, verification_names), "what an event-driven run over one period found",
-           .source = "[JAP] (1)-(3)",
+    COLUMN("verified", WORD(ric_verification, result, verification_names),
+           "what an event-driven run over one period found", OF_VERIFICATION, .source = "[JAP] (1)-(3)",
            .doc = "result of an event-driven run over one period; `impact_missing`, `impact_extra`: compared with the "
                   "predicted impacts; `not_run` for orbits that are neither admissible nor grazing"),
-    COLUMN("closure_error", NUMBER(orbits_row, closure_error),
-           "difference after one period, relative to the largest displacement and velocity", .source = "[JAP] (1)-(3)",
+    COLUMN("closure_error", NUMBER(ric_verification, closure_error),
+           "difference after one period, relative to the largest displacement and velocity", OF_VERIFICATION,
+           .source = "[JAP] (1)-(3)",
            .doc = "largest difference of displacements and velocities after that period, relative to the largest "
                   "displacement and velocity; NaN when not run"),
 };
@@ -158,22 +162,4 @@ ric_status orbits_verified(ric_status status, const ric_error *error, ric_verifi
   *v = (ric_verification){.result = RIC_RUN_FAILED, .closure_error = NAN};
   snprintf(v->reason, sizeof v->reason, "%.*s", (int)sizeof v->reason - 1, error->message);
   return RIC_OK;
-}
-
-orbits_row orbits_row_of(const ric_orbit *o, const char *reason, const ric_verification *verification) {
-  return (orbits_row){.outcome = (int)o->outcome,
-                      .reason = reason,
-                      .q = o->q,
-                      .v = o->v,
-                      .impulse = o->impulse,
-                      .energy = o->energy,
-                      .residual = o->residual,
-                      .clearance = o->clearance,
-                      .clearance_time = o->clearance_time,
-                      .clearance_particle = o->clearance_particle,
-                      .condition = o->condition,
-                      .mode = o->mode,
-                      .harmonic = o->harmonic,
-                      .verified = (int)verification->result,
-                      .closure_error = verification->closure_error};
 }
