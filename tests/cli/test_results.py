@@ -127,31 +127,39 @@ def test_every_data_set_has_checksums_and_says_what_it_is(ricochet, folder, ship
 
 
 def documented(page):
-    """{name of a data set: its axes} of the tables on the schema page."""
-    found, group = {}, ""
-    for cells in (line.split(" | ") for line in page.splitlines() if line.startswith("| `/")):
-        axes = re.search(r"\[([^\]]*)\]", cells[1]) if len(cells) > 2 else None
-        for name in re.findall(r"`/?([\w/]+)`", cells[0]) if axes else []:
-            name = name if "/" in name else f"{group}/{name}"
-            group = name.split("/")[0]
-            found[name] = axes[1].split(", ")
+    """{name of a data set: [(its axes, its type)]} of the tables on the schema page. What ends a window has two rows, with
+    the words of maps and of motions."""
+    found = {}
+    for line in page.splitlines():
+        row = re.match(r"\| `/([\w/]+)` \| \[(.*?)\] \| (.*?) \| (.*\S) \|$", line)
+        assert row or not line.startswith("| `/") or " | [" not in line, line
+        if row:
+            found.setdefault(row[1], []).append((row[2].split(", "), row[3]))
     return found
 
 
-def test_every_data_set_stands_on_the_schema_page_with_its_axes(shipped, source):
+def type_of(data):
+    """The type of a data set in the words of the schema page."""
+    words = {"f": "float64", "i": "int64", "c": "complex", "S": "text", "b": "enum: `FALSE`, `TRUE`"}
+    values = h5py.check_enum_dtype(data.dtype)
+    if not values:
+        return words[data.dtype.kind]
+    assert sorted(values.values()) == list(range(len(values))), data.name
+    return "enum: " + ", ".join(f"`{word}`" for word in sorted(values, key=values.get))
+
+
+def test_every_data_set_stands_on_the_schema_page_with_its_axes_and_type(shipped, source):
     page = documented((source / "docs" / "results.md").read_text())
     seen = set()
     for path in shipped:
         with h5py.File(path) as file:
             for data in data_sets(file):
-                group, _, name = data.name[1:].rpartition("/")
+                group = data.name[1:].rpartition("/")[0]
                 if group in ("", "sweep"):
                     continue
-                same = f"diagram/{name}" if group == "basin" else ""  # what basins have of diagrams is told there
-                key = data.name[1:] if data.name[1:] in page else same
-                assert key in page, data.name
-                assert data.attrs["axes"].decode().split() == page[key], data.name
-                seen.add(key)
+                axes = data.attrs["axes"].decode().split()
+                assert (axes, type_of(data)) in page[data.name[1:]], (data.name, axes, type_of(data))
+                seen.add(data.name[1:])
     assert len(seen) > 200
 
 

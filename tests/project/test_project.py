@@ -86,6 +86,20 @@ def test_the_study_reference_is_what_the_schema_table_prints(ricochet, source, f
     assert printed == (source / "docs" / "studies.md").read_text()
 
 
+def test_the_schema_page_is_what_the_lists_of_columns_print(ricochet, source, folder):
+    """To renew it: ricochet show --reference > docs/results.md."""
+    printed = ricochet("show", "--reference", cwd=folder).expect_done().out
+    assert printed == (source / "docs" / "results.md").read_text()
+
+
+def test_every_axis_of_the_schema_page_is_in_its_table_of_scales(source):
+    page = (source / "docs" / "results.md").read_text()
+    scales = re.search(r"^\| scale \| meaning \|\n(.*?)\n\n", page, re.M | re.S).group(1)
+    listed = {name for line in scales.splitlines() for name in re.findall(r"`/(\w+)`", line.split(" | ")[0])}
+    used = {name for axes in re.findall(r"^\| `/[\w/]+` \| \[(.*?)\] \|", page, re.M) for name in axes.split(", ")}
+    assert used == listed and len(used) > 20, used ^ listed
+
+
 def test_no_fortran_runtime_is_behind_any_binary(build):
     for binary in ("ricochet", "ricochet_bench", "libricochet.so"):
         linked = subprocess.run(["ldd", build / "bin" / binary], check=True, capture_output=True, text=True).stdout

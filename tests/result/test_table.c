@@ -32,10 +32,37 @@ static const column columns[] = {
 
 static table laid_out(void) {
   const table_axis axes[] = {{"particle", 3}, {"window", 2}};
-  table t = {.group = "samples", .row_axis = "task"};
-  table_add(&t, columns, sizeof columns / sizeof *columns, axes, 2);
+  table t = {0};
+  table_add(&t, &(column_list){"samples", "task", COLUMNS(columns)}, axes, 2);
   table_lay_out(&t);
   return t;
+}
+
+/* A row that points to what holds its numbers. */
+typedef struct pointing {
+  const sample *of;
+  double own;
+} pointing;
+
+static void columns_of_what_a_row_points_to_are_written(void **state) {
+  (void)state;
+  static const column list[] = {{.name = "own", NUMBER(pointing, own)},
+                                {.name = "energy", NUMBER(sample, energy), OF(pointing, of)},
+                                {.name = "reason", TEXT(sample, reason, 8), OF(pointing, of)},
+                                {.name = "q", NUMBERS(sample, q), .axes = {"particle"}, OF(pointing, of)}};
+  const table_axis axis = {"particle", 2};
+  table t = {0};
+  double row[5];
+  table_add(&t, &(column_list){"samples", "task", COLUMNS(list)}, &axis, 1);
+  assert_int_equal(table_lay_out(&t), sizeof row);
+  const sample of = {.energy = 3, .reason = "why", .q = (double[]){-1, 4}};
+  row_fill(&t, (unsigned char *)row, &(pointing){.of = &of, .own = 0.5});
+  assert_memory_equal(row, ((double[]){0.5, 3}), 2 * sizeof *row);
+  assert_memory_equal(row + 2, "why\0\0\0\0", 8);
+  assert_memory_equal(row + 3, ((double[]){-1, 4}), 2 * sizeof *row);
+  pointing back = {.of = &of};
+  row_load(&t, (unsigned char *)row, &back);
+  assert_true(back.of == &of && back.own == 0.5);
 }
 
 static const double positions[] = {0.5, -1, 7};
@@ -100,6 +127,8 @@ static void rows_have_no_bytes_of_what_was_there(void **state) {
 static void layouts_leave_out_what_has_no_axis_and_say_their_size(void **state) {
   (void)state;
   const table t = laid_out();
+  assert_string_equal(t.group, "samples");
+  assert_string_equal(t.row_axis, "task");
   assert_int_equal(t.column_count, 8);
   assert_null(table_column(&t, "absent"));
   assert_string_equal(table_column(&t, "energy")->units, "1");
@@ -113,14 +142,16 @@ static void layouts_leave_out_what_has_no_axis_and_say_their_size(void **state) 
 /* Extents whose product does not fit into a size. */
 static void sizes_do_not_overflow(void **state) {
   (void)state;
-  table t = {.group = "samples", .row_axis = "task"};
+  table t = {0};
   const column wide[] = {{.name = "q", NUMBERS(sample, q), .axes = {"a", "b"}}};
-  table_add(&t, wide, 1, (table_axis[]){{"a", (size_t)1 << 40}, {"b", (size_t)1 << 40}}, 2);
+  const column_list list = {"samples", "task", COLUMNS(wide)};
+  table_add(&t, &list, (table_axis[]){{"a", (size_t)1 << 40}, {"b", (size_t)1 << 40}}, 2);
   assert_true(table_row_bytes(&t) == ldexp(1, 83));
 }
 
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(columns_of_what_a_row_points_to_are_written),
       cmocka_unit_test(what_is_stored_is_loaded),
       cmocka_unit_test(several_values_are_filled_in_their_places),
       cmocka_unit_test(rows_have_no_bytes_of_what_was_there),

@@ -74,9 +74,11 @@ static bool set_extents(column *c, const table_axis *axes, size_t axis_count) {
   return true;
 }
 
-void table_add(table *t, const column *columns, size_t count, const table_axis *axes, size_t axis_count) {
-  for (size_t i = 0; i < count; i++) {
-    column added = columns[i];
+void table_add(table *t, const column_list *list, const table_axis *axes, size_t axis_count) {
+  t->group = list->group;
+  t->row_axis = list->row_axis;
+  for (size_t i = 0; i < list->count; i++) {
+    column added = list->columns[i];
     if (!added.units)
       added.units = "1";
     if (set_extents(&added, axes, axis_count))
@@ -187,14 +189,23 @@ static void store(const column *c, unsigned char *at, const unsigned char *membe
   }
 }
 
+/* The struct that holds a column's member. */
+static const unsigned char *holder_of(const column *c, const unsigned char *values) {
+  const void *behind = values;
+  if (c->behind)
+    memcpy(&behind, values + c->behind - 1, sizeof behind);
+  return behind;
+}
+
 void row_load(const table *t, unsigned char *row, void *values) {
   for (size_t i = 0; i < t->column_count; i++)
-    load(&t->columns[i], row + t->columns[i].offset, (unsigned char *)values + t->columns[i].member);
+    if (!t->columns[i].behind)
+      load(&t->columns[i], row + t->columns[i].offset, (unsigned char *)values + t->columns[i].member);
 }
 
 void row_store(const table *t, unsigned char *row, const void *values) {
   for (size_t i = 0; i < t->column_count; i++)
-    store(&t->columns[i], row + t->columns[i].offset, (const unsigned char *)values + t->columns[i].member);
+    store(&t->columns[i], row + t->columns[i].offset, holder_of(&t->columns[i], values) + t->columns[i].member);
 }
 
 void row_fill(const table *t, unsigned char *row, const void *values) {

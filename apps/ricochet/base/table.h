@@ -2,7 +2,7 @@
  *
  * A kind of study describes its results as tables; the evaluation of a task fills one row of the first, and adds
  * records to the others: rows of tables whose number differs from task to task, such as impacts. Checkpoint, result
- * writer, `show` and the schema page all read this description.
+ * writer, `show` and the schema page (docs/results.md) all read this description.
  *
  * In C a row is a plain struct of the kind's own, and each column says which member of it holds its value (NUMBER,
  * INTEGER, ... below, which also check the member's type). row_load and row_store go from the bytes to the struct and
@@ -42,7 +42,9 @@ typedef struct column {
   size_t name_count;
   const char *units; /* NULL: "1", dimensionless */
   const char *long_name, *source;
-  size_t member;                                       /* offset in the struct of a row; what it is: see below */
+  const char *doc; /* meaning on the schema page; NULL: the long name says it all */
+  size_t member;   /* offset in the struct of a row; what it is: see below */
+  size_t behind;   /* 0: the row's own; else 1 + the offset of a pointer in the row to the struct with the member */
   column_attribute attributes[COLUMN_MOST_ATTRIBUTES]; /* the first ones that have a name */
   size_t offset; /* of the first value in a row; set by table_lay_out, a multiple of 8 */
 } column;
@@ -65,15 +67,32 @@ typedef struct column {
 /* Words with further axes are bytes. */
 #define WORDS(row, m, list) WORDS_OF(list), .member = COLUMN_MEMBER(row, m, unsigned char *, const unsigned char *)
 
+/* The member is one of a struct that the row points to: COLUMN("energy", NUMBER(ric_orbit, energy), ..., OF(orbits_row,
+ * orbit)). Such a column is written, not read. */
+#define OF(row, pointer) .behind = 1 + offsetof(row, pointer)
+
 /* A line of a list of columns: name, type and member, what it is, its source, and what else there is to say. */
 #define COLUMN(column_name, type_and_member, meaning, ...)                                                             \
   { .name = (column_name), type_and_member, .long_name = (meaning), __VA_ARGS__ }
 
+/** Columns that a table has together. Tables are laid out from such lists, and the schema page prints them. */
+typedef struct column_list {
+  const char *group;    /* "orbits"; NULL ends an array of lists */
+  const char *row_axis; /* dimension scale of the rows: "task" for tables with a row per task */
+  const char *offset;   /* of records: data set of their offsets, "impact_offset"; NULL: none, or in an earlier list */
+  const char *meaning;  /* its long name */
+  const char *doc;      /* lines above the columns on the schema page: condition, what the rows are; NULL: none, and the
+                           columns continue the page's table before */
+  const column *columns;
+  size_t count;
+} column_list;
+
+#define COLUMNS(list) .columns = (list), .count = sizeof(list) / sizeof *(list)
+
 enum { TABLE_MAX_COLUMNS = 48 };
 
 typedef struct table {
-  const char *group;    /* "orbits" */
-  const char *row_axis; /* dimension scale of the rows: "task" for tables with a row per task */
+  const char *group, *row_axis; /* of its lists */
   column columns[TABLE_MAX_COLUMNS];
   size_t column_count;
   size_t row_bytes;
@@ -97,10 +116,10 @@ size_t column_values(const column *c);
 /** Bytes of a row's values. */
 size_t column_bytes(const column *c);
 
-/** Appends copies of columns, with the extents of their axes. A column with an axis that is not among `axes` is left
- *  out: what a study does not ask for has no axis.
+/** Appends copies of a list's columns, with the extents of their axes, and takes its group and row axis. A column with
+ *  an axis that is not among `axes` is left out: what a study does not ask for has no axis.
  *  @param axes  [axis_count] */
-void table_add(table *t, const column *columns, size_t count, const table_axis *axes, size_t axis_count);
+void table_add(table *t, const column_list *list, const table_axis *axes, size_t axis_count);
 
 /** Takes a column out, if there is one of this name. Before the layout. */
 void table_drop(table *t, const char *name);

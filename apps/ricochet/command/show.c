@@ -8,16 +8,18 @@
 
 static const char help[] =
     "usage: ricochet show FILE.h5 [--csv[=GROUP[/AXIS]]] [--verify]\n"
+    "       ricochet show --reference\n"
     "\n"
     "Prints what is in a result: parameters, columns, outcomes, special points.\n"
     "\n"
     "  --csv[=GROUP]       the columns of a group (default: the first with a row per task) as CSV\n"
     "  --csv=GROUP/AXIS    those along another axis, for example trajectory/impact_row\n"
     "  --verify            reads everything through its checksums, says whether it is sound\n"
+    "  --reference         prints the schema of results, every data set of every kind, in Markdown\n"
     "\n"
     "Exit codes: 0 done, 2 bad usage, 3 cannot read, damaged or not a result.\n";
 
-typedef enum what { SHOW_CONTENTS, SHOW_CSV, SHOW_VERIFY, SHOW_HELP } what;
+typedef enum what { SHOW_CONTENTS, SHOW_CSV, SHOW_VERIFY, SHOW_REFERENCE, SHOW_HELP } what;
 
 static int show(what w, const char *path, const char *group, message *why) {
   if (w == SHOW_CSV)
@@ -33,6 +35,7 @@ static int show(what w, const char *path, const char *group, message *why) {
 int command_show(int argc, char **argv) {
   static const struct option options[] = {{"csv", optional_argument, NULL, 'c'},
                                           {"verify", no_argument, NULL, 'v'},
+                                          {"reference", no_argument, NULL, 'r'},
                                           {"help", no_argument, NULL, 'h'},
                                           {NULL, 0, NULL, 0}};
   message why;
@@ -48,14 +51,16 @@ int command_show(int argc, char **argv) {
       group = optarg;
     } else if (option == 'v')
       w = SHOW_VERIFY;
+    else if (option == 'r')
+      w = SHOW_REFERENCE;
     else if (option == 'h')
       w = SHOW_HELP;
     else if (option != -1)
       code = refuse(&why, EXIT_USAGE, "ricochet show: unknown option %s (see ricochet show --help)",
                     refused_option(argv, text));
   }
-  if (!code && w == SHOW_HELP) {
-    fputs(help, stdout);
+  if (!code && w >= SHOW_REFERENCE) {
+    w == SHOW_HELP ? (void)fputs(help, stdout) : kind_results_reference(stdout);
     return finish_output(0);
   }
   if (!code && argc - optind != 1)

@@ -13,7 +13,7 @@
 #include "base/table.h"
 #include "result/result.h"
 
-enum { KIND_MOST_TAILS = 6, KIND_MOST_EXTRAS = 2 };
+enum { KIND_MOST_TAILS = 6, KIND_MOST_EXTRAS = 2, KIND_MOST_LISTS = 2 };
 
 /** A table of records, of which each task has as many as it has: task i owns the records offset[i] to offset[i + 1]. */
 typedef struct tail {
@@ -57,6 +57,9 @@ typedef struct kind kind;
 
 struct kind {
   schema_choice choice; /* its first member, so that a choice of the schema is a kind */
+  /** The lists of columns that its tables are laid out from, in up to KIND_MOST_LISTS arrays that each end with an
+   * empty list. */
+  const column_list *lists[KIND_MOST_LISTS];
   /** The kind that evaluates this study, where that depends on its keys; NULL: this one. */
   const kind *(*variant)(const study *s);
   /** Lays out the results; refuses a study that cannot work or cannot fit (0 or EXIT_USAGE). */
@@ -95,9 +98,11 @@ result_card *kind_card(const char *name);
 /** What evaluates a study. */
 const kind *kind_of(const study *s);
 
-/** Lays out a tail of a group: copies of columns as table_add takes them. Texts are borrowed. */
-void kind_lay_out_tail(tail *to, const char *group, const char *row_axis, const char *offset, const char *meaning,
-                       const column *columns, size_t count, const table_axis *axes, size_t axis_count);
+/** Lays out a tail from a list, as table_add. */
+void kind_lay_out_tail(tail *to, const column_list *list, const table_axis *axes, size_t axis_count);
+
+/** Prints the schema page of results in Markdown: the tables of every kind. */
+void kind_results_reference(FILE *out);
 
 /** An `extra` for kinds without such a table. */
 int kind_no_extra(const study *s, const kind_plan *plan, const row_source *done, ric_poll poll, extra_rows *extra,

@@ -69,10 +69,9 @@ const kind *kind_of(const study *s) {
   return found->variant ? found->variant(s) : found;
 }
 
-void kind_lay_out_tail(tail *to, const char *group, const char *row_axis, const char *offset, const char *meaning,
-                       const column *columns, size_t count, const table_axis *axes, size_t axis_count) {
-  *to = (tail){.records = {.group = group, .row_axis = row_axis}, .offset = offset, .meaning = meaning};
-  table_add(&to->records, columns, count, axes, axis_count);
+void kind_lay_out_tail(tail *to, const column_list *list, const table_axis *axes, size_t axis_count) {
+  *to = (tail){.offset = list->offset, .meaning = list->meaning};
+  table_add(&to->records, list, axes, axis_count);
   table_lay_out(&to->records);
 }
 

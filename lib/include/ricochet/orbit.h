@@ -94,9 +94,9 @@ typedef struct ric_orbit {
   double clearance; /* smallest gap over the whole period of the free particles that have a floor; NaN if none */
   double clearance_time;        /* when, in [0, T/2]; NaN */
   long long clearance_particle; /* its particle (for user systems: obstacle); -1 */
-  double condition;  /* impulse: largest free response over the response at the contacts; dense: of its matrix */
-  long long mode;    /* the resonant mode of `grazing` and `resonant`; -1 */
-  unsigned harmonic; /* l of that resonance; 0 */
+  double condition;   /* impulse: largest free response over the response at the contacts; dense: of its matrix */
+  long long mode;     /* the resonant mode of `grazing` and `resonant`; -1 */
+  long long harmonic; /* l of that resonance; 0 */
 } ric_orbit;
 
 /** Allocates the arrays. @returns RIC_ENOMEM, RIC_EINVAL for a size of 0. */

@@ -74,6 +74,9 @@ typedef struct branch_curve_point {
   long long iterations;
 } branch_curve_point;
 
+/** The columns of its tables (kind.h). */
+extern const column_list branch_lists[];
+
 /** Lays out the row and the tails.
  *  @param followed  name of the parameter, borrowed; the columns of its values bear it
  *  @param traced  that of the second one, borrowed; NULL without curves */

@@ -343,7 +343,7 @@ static int branch_evaluate(worker *w, const kind_plan *plan, task_range tasks, u
     before[k] = tails[k].count;
   study_values_at(w->task.values, tasks.first);
   ric_status status = follow(&found, &w->task);
-  branch_family_close(&w->task.family);
+  family_task_close(&w->task);
   if (status == RIC_ESTOPPED)
     return -1;
   if (status != RIC_OK) { /* of a branch that does not fit, nothing is kept */
@@ -391,6 +391,7 @@ const kind kind_branch = {.choice = {.name = "branch",
                                      .wants = branch_wants,
                                      .check = branch_check},
                           .resolve = branch_resolve,
+                          .lists = {branch_lists},
                           .plan = branch_plan,
                           .open = branch_open,
                           .evaluate = branch_evaluate,

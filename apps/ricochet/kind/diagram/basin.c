@@ -18,16 +18,27 @@ typedef struct basin_attractor {
 
 static const column task_columns[] = {
     COLUMN("attractor", INTEGER(basin_label, attractor),
-           "which attractor the start comes to; -1: none, -2: one past the first 1000", SOURCE),
+           "which attractor the start comes to; -1: none, -2: one past the first 1000", SOURCE,
+           .doc = "index of the attractor to which the start converges; -1 if it diverges or fails; -2: an attractor "
+                  "that is not among the first 1000"),
 };
 
 static const column attractor_columns[] = {
-    COLUMN("found_period", INTEGER(basin_attractor, period), "period of the attractor; 0: all without one", SOURCE),
-    COLUMN("found_tasks", INTEGER(basin_attractor, tasks), "number of starts that come to it", SOURCE),
-    COLUMN("found_first", INTEGER(basin_attractor, first), "first task that does", SOURCE),
+    COLUMN("found_period", INTEGER(basin_attractor, period), "period of the attractor; 0: all without one", SOURCE,
+           .doc = "its period; 0: all attractors without a period count as one"),
+    COLUMN("found_tasks", INTEGER(basin_attractor, tasks), "number of starts that come to it", SOURCE,
+           .doc = "number of starts that converge to it"),
+    COLUMN("found_first", INTEGER(basin_attractor, first), "first task that does", SOURCE, .doc = "the first of them"),
     COLUMN("found_lowest", NUMBERS(basin_attractor, lowest),
-           "state of it with the smallest observed number; of the first task", SOURCE, .axes = {"coordinate"}),
+           "state of it with the smallest observed number; of the first task", SOURCE, .axes = {"coordinate"},
+           .doc = "`lowest` of that start. Cycles of equal period are one attractor if these states differ by less "
+                  "than 1e-4 of their size"),
 };
+
+const column_list basin_attractor_lists[] = {
+    {"basin", "task", COLUMNS(task_columns)},
+    {"basin", "attractor_row", COLUMNS(attractor_columns), .doc = "The attractors:\n"},
+    {0}};
 
 /* The tables on their way. */
 typedef struct sorting {
@@ -41,11 +52,9 @@ typedef struct sorting {
 
 static int lay_out(sorting *k, const study *s) {
   const table_axis axes[] = {{"coordinate", k->size}};
-  k->tasks = (table){.group = "basin", .row_axis = "task"};
-  table_add(&k->tasks, task_columns, sizeof task_columns / sizeof *task_columns, axes, 1);
+  table_add(&k->tasks, &basin_attractor_lists[0], axes, 1);
   table_lay_out(&k->tasks);
-  k->attractors = (table){.group = "basin", .row_axis = "attractor_row"};
-  table_add(&k->attractors, attractor_columns, sizeof attractor_columns / sizeof *attractor_columns, axes, 1);
+  table_add(&k->attractors, &basin_attractor_lists[1], axes, 1);
   table_lay_out(&k->attractors);
   k->labels = calloc(study_tasks(s), k->tasks.row_bytes);
   k->row = calloc(1, k->plan->rows.row_bytes);

@@ -19,7 +19,7 @@ int beyond_init(beyond *b, const study *s, ric_poll poll, message *why) {
 static void forget(beyond *b) {
   ric_grazing_map_clear(&b->map);
   ric_grazing_clear(&b->grazing);
-  branch_family_close(&b->task.family);
+  family_task_close(&b->task);
   b->known = false;
 }
 

@@ -12,46 +12,95 @@ static const char *const outcome_names[RIC_ATTRACTOR_KINDS] = {
 #undef X
 };
 
-/* The columns of both kinds, in the order of the schema page. */
-static const column columns[] = {
-    COLUMN("outcome", WORD(diagram_row, outcome, outcome_names), "what the iterates come to", SOURCE),
-    COLUMN("reason", TEXT(diagram_row, reason, DIAGRAM_REASON_BYTES), "why they come to nothing; else empty", SOURCE),
+/* Of both kinds, as `end_columns`. */
+static const column row_columns[] = {
+    COLUMN("outcome", WORD(diagram_row, outcome, outcome_names), "what the iterates come to", SOURCE,
+           .doc = "`aperiodic`: no period up to the limit: chaos, a longer period, or a transient that is not over; "
+                  "`diverged`: a number of the state exceeds 1e100; `failed`: a motion that cannot be continued, a "
+                  "section that is not crossed, a model that the library does not accept, no grazing point"),
+    COLUMN("reason", TEXT(diagram_row, reason, DIAGRAM_REASON_BYTES), "why they come to nothing; else empty", SOURCE,
+           .doc = "why it diverged or failed, otherwise empty; with `grazing.beyond` also why there is no map"),
     COLUMN("attractor_period", INTEGER(diagram_row, attractor_period),
-           "period of the attractor, 0: none up to period_limit", SOURCE),
-    COLUMN("impacts", NUMBER(diagram_row, impacts), "impacts per iterate, on the average", SOURCE),
-    COLUMN("lyapunov", NUMBER(diagram_row, lyapunov), "largest Lyapunov exponent per iterate", SOURCE),
-    COLUMN("exponents", NUMBERS(diagram_row, exponents), "Lyapunov exponents per iterate", SOURCE,
-           .axes = {"exponent"}),
-    COLUMN("values", NUMBERS(diagram_row, values), NULL, SOURCE, .axes = {"iterate"}),
-    COLUMN("state", NUMBERS(diagram_row, state), "kept iterates", SOURCE, .axes = {"iterate", "coordinate"}),
-    COLUMN("end", NUMBERS(diagram_row, end), "state after all measured iterates", SOURCE, .axes = {"coordinate"}),
+           "period of the attractor, 0: none up to period_limit", SOURCE,
+           .doc = "period in iterates, 0: none up to the limit; attributes `period_limit` and `period_tol`: the states "
+                  "return to within this fraction of their extent. Near the edges of windows convergence is slow, and "
+                  "a period may not be detected"),
+    COLUMN("impacts", NUMBER(diagram_row, impacts), "impacts per iterate, on the average", SOURCE,
+           .doc = "mean number of impacts per iterate over `iterate.measure`; NaN if diverged or failed"),
+};
+
+/* Of diagrams. */
+static const column diagram_columns[] = {
+    COLUMN("lyapunov", NUMBER(diagram_row, lyapunov), "largest Lyapunov exponent per iterate", SOURCE,
+           .doc = "with `lyapunov: true`: the largest exponent, natural logarithm per iterate, for a motion with "
+                  "saltation at impacts; NaN if unknown"),
+    COLUMN("exponents", NUMBERS(diagram_row, exponents), "Lyapunov exponents per iterate", SOURCE, .axes = {"exponent"},
+           .doc = "with `exponents: 2` or more: all of them, largest first"),
+    COLUMN("values", NUMBERS(diagram_row, values), NULL, SOURCE, .axes = {"iterate"},
+           .doc = "unless `keep: 0`: the kept iterates of the observed number, whose name is the attribute "
+                  "`long_name`; NaN where there are none"),
+    COLUMN("state", NUMBERS(diagram_row, state), "kept iterates", SOURCE, .axes = {"iterate", "coordinate"},
+           .doc = "with `states: true`: the kept iterates"),
+};
+
+static const column end_columns[] = {
+    COLUMN("end", NUMBERS(diagram_row, end), "state after all measured iterates", SOURCE, .axes = {"coordinate"},
+           .doc = "the last measured iterate; if the task diverged, the last valid state"),
     COLUMN("lowest", NUMBERS(diagram_row, lowest), "state on the attractor with the smallest observed number", SOURCE,
-           .axes = {"coordinate"}),
+           .axes = {"coordinate"},
+           .doc = "the state on the attractor with the smallest observed number: on a cycle always the same state; NaN "
+                  "if diverged or failed"),
 };
 
 /* Of diagrams beyond grazing. */
 static const column beyond_columns[] = {
-    COLUMN("parameter", NUMBER(diagram_row, parameter), "branch.parameter", SOURCE),
-    COLUMN("d", NUMBER(diagram_row, d), "how far the periodic motion would pass the obstacle, to first order", SOURCE),
-    COLUMN("map_period", INTEGER(diagram_row, map_period), "period of the attractor of the map, 0: none", MAP),
-    COLUMN("map_impacts", NUMBER(diagram_row, map_impacts), "impacts per iterate of the map", MAP),
-    COLUMN("map_lyapunov", NUMBER(diagram_row, map_lyapunov), "its largest Lyapunov exponent per iterate", MAP),
+    COLUMN("parameter", NUMBER(diagram_row, parameter), "branch.parameter", SOURCE,
+           .doc = "value of `branch.parameter`"),
+    COLUMN("d", NUMBER(diagram_row, d), "how far the periodic motion would pass the obstacle, to first order", SOURCE,
+           .doc = "penetration of the periodic motion without the obstacle, to first order: the d of the map"),
+    COLUMN("map_period", INTEGER(diagram_row, map_period), "period of the attractor of the map, 0: none", MAP,
+           .doc = "as `attractor_period`, of the return map with the same numbers of iterates"),
+    COLUMN("map_impacts", NUMBER(diagram_row, map_impacts), "impacts per iterate of the map", MAP,
+           .doc = "as `impacts`, of the map"),
+    COLUMN("map_lyapunov", NUMBER(diagram_row, map_lyapunov), "its largest Lyapunov exponent per iterate", MAP,
+           .doc = "with `lyapunov: true`: as `lyapunov`, of the map"),
     COLUMN("map_values", NUMBERS(diagram_row, map_values),
-           "its iterates as values of the motion: beside the periodic one", MAP, .axes = {"iterate"}),
+           "its iterates as values of the motion: beside the periodic one", MAP, .axes = {"iterate"},
+           .doc = "unless `keep: 0`: iterates of the map, added to the periodic motion without the obstacle"),
     COLUMN("distance", NUMBER(diagram_row, distance),
-           "between the values of the motion and of the map, over the extent of the latter", MAP),
+           "between the values of the motion and of the map, over the extent of the latter", MAP,
+           .doc = "unless `keep: 0`: Hausdorff distance of both sets of values, divided by the extent of those of the "
+                  "map; infinite if that is zero, as for period 1"),
 };
+
+#define LIST(kind) .group = (kind), .row_axis = "task"
+
+extern const char chapter_diagram_results[], chapter_basin_results[];
+
+/* The last one is that of diagrams beyond grazing. */
+enum { DIAGRAM_BEYOND = 3 };
+
+const column_list diagram_lists[] = {
+    {LIST("diagram"), COLUMNS(row_columns), .doc = chapter_diagram_results},
+    {LIST("diagram"), COLUMNS(diagram_columns)},
+    {LIST("diagram"), COLUMNS(end_columns)},
+    [DIAGRAM_BEYOND] = {LIST("diagram"), COLUMNS(beyond_columns),
+                        .doc = "With `grazing.beyond`, for motions; NaN (`map_period` 0) if there is no map:\n"},
+    {0}};
+
+const column_list basin_lists[] = {
+    {LIST("basin"), COLUMNS(row_columns), .doc = chapter_basin_results}, {LIST("basin"), COLUMNS(end_columns)}, {0}};
 
 static size_t exponents_of(const study_values *v) {
   return value_flag(v, KEY_ITERATE_LYAPUNOV) ? (size_t)value_number(v, KEY_ITERATE_EXPONENTS, 0) : 0;
 }
 
-static size_t kept_of(const study *s, const study_values *v) {
-  return strcmp(study_kind(s), "diagram") == 0 ? (size_t)value_number(v, KEY_ITERATE_KEEP, 0) : 0;
+static bool is_basin(const study *s) {
+  return strcmp(study_kind(s), "basin") == 0;
 }
 
 void diagram_lay_out(const study *s, const study_values *v, table *rows) {
-  const size_t exponents = exponents_of(v), keep = kept_of(s, v);
+  const size_t exponents = exponents_of(v), keep = is_basin(s) ? 0 : (size_t)value_number(v, KEY_ITERATE_KEEP, 0);
   const bool states = keep > 0 && value_flag(v, KEY_ITERATE_STATES);
   table_axis axes[3];
   size_t count = 0;
@@ -60,10 +109,10 @@ void diagram_lay_out(const study *s, const study_values *v, table *rows) {
   if (keep > 0)
     axes[count++] = (table_axis){"iterate", keep};
   axes[count++] = (table_axis){"coordinate", diagram_state_size(s)};
-  *rows = (table){.group = study_kind(s), .row_axis = "task"};
-  table_add(rows, columns, sizeof columns / sizeof *columns, axes, count);
-  if (diagram_is_beyond(s))
-    table_add(rows, beyond_columns, sizeof beyond_columns / sizeof *beyond_columns, axes, count);
+  *rows = (table){0};
+  for (const column_list *list = is_basin(s) ? basin_lists : diagram_lists; list->group; list++)
+    if (list != &diagram_lists[DIAGRAM_BEYOND] || diagram_is_beyond(s))
+      table_add(rows, list, axes, count);
   if (exponents == 0) {
     table_drop(rows, "lyapunov");
     table_drop(rows, "map_lyapunov");

@@ -7,6 +7,9 @@
 
 enum { DIAGRAM_REASON_BYTES = 128 };
 
+/** The columns of their tables (kind.h). */
+extern const column_list diagram_lists[], basin_lists[], diagram_window_lists[], basin_attractor_lists[];
+
 /** The rows of a study of either kind. */
 void diagram_lay_out(const study *s, const study_values *v, table *rows);
 

@@ -6,21 +6,17 @@
 #include "diagram.h"
 #include "model/grazing_map.h"
 
-/* Names of what ends a window, of maps or of motions. @param count  set */
-static const char *const *window_edge_names(const study *s, size_t *count) {
-  static const char *const of_maps[RIC_GRAZING_EDGES + 1] = {
+static const char *const map_edge_names[RIC_GRAZING_EDGES + 1] = {
 #define X(name, text) text,
-      RIC_GRAZING_EDGE_LIST(X)
+    RIC_GRAZING_EDGE_LIST(X)
 #undef X
-          "none"};
-  static const char *const of_motions[RIC_FAMILY_KINDS + 1] = {
+        "none"};
+
+static const char *const motion_edge_names[RIC_FAMILY_KINDS + 1] = {
 #define X(name, text) text,
-      RIC_FAMILY_LIST(X)
+    RIC_FAMILY_LIST(X)
 #undef X
-          "none"};
-  *count = model_has(s, MODEL_MAP) ? RIC_GRAZING_EDGES + 1 : RIC_FAMILY_KINDS + 1;
-  return model_has(s, MODEL_MAP) ? of_maps : of_motions;
-}
+        "none"};
 
 /* Index of the sweep that is followed: the last one. */
 static size_t last_of(const iterated *it) {
@@ -40,43 +36,77 @@ typedef struct window_row {
 } window_row;
 
 static const column columns[] = {
-    COLUMN("task", INTEGER(window_row, task), "task from which it was followed", SOURCE),
-    COLUMN("tasks", INTEGER(window_row, tasks), "number of tasks of the period, one after the other", SOURCE),
-    COLUMN("period", INTEGER(window_row, period), "period of the attractor", SOURCE),
-    COLUMN("impacts", INTEGER(window_row, impacts), "impacts in a period; -1: not located", SOURCE),
-    COLUMN("parameter", NUMBER(window_row, parameter), "value of the last sweep at the task", SOURCE),
-    COLUMN("low", NUMBER(window_row, low), "value at which the window begins, located on the cycle", SOURCE),
-    COLUMN("high", NUMBER(window_row, high), "value at which it ends, located on the cycle", SOURCE),
+    COLUMN("task", INTEGER(window_row, task), "task from which it was followed", SOURCE,
+           .doc = "the task at which the continuation of its cycle started"),
+    COLUMN("tasks", INTEGER(window_row, tasks), "number of tasks of the period, one after the other", SOURCE,
+           .doc = "number of consecutive tasks with this period and number of impacts"),
+    COLUMN("period", INTEGER(window_row, period), "period of the attractor", SOURCE, .doc = "period in iterates"),
+    COLUMN("impacts", INTEGER(window_row, impacts), "impacts in a period; -1: not located", SOURCE,
+           .doc = "impacts in a period; -1 where no edge was located"),
+    COLUMN("parameter", NUMBER(window_row, parameter), "value of the last sweep at the task", SOURCE,
+           .doc = "value of the last sweep at that task"),
+    COLUMN("low", NUMBER(window_row, low), "value at which the window begins, located on the cycle", SOURCE,
+           .doc = "the lower edge: where the continued cycle loses stability or reaches the border; NaN if not "
+                  "located. The search extends beyond the sweep, from a tenth of its smallest to ten times its largest "
+                  "value if these are positive"),
+    COLUMN("high", NUMBER(window_row, high), "value at which it ends, located on the cycle", SOURCE,
+           .doc = "the upper edge, likewise"),
     COLUMN("low_outside", NUMBER(window_row, low_outside),
-           "below the window, as the attractor says; NaN: end of the sweep", SOURCE),
-    COLUMN("low_inside", NUMBER(window_row, low_inside), "in the window, as the attractor says", SOURCE),
-    COLUMN("high_inside", NUMBER(window_row, high_inside), "in the window, as the attractor says", SOURCE),
+           "below the window, as the attractor says; NaN: end of the sweep", SOURCE,
+           .doc = "bracket of the lower edge on the attractors, to a relative width of 1/100, near zero to 1e-9 of a "
+                  "step of the sweep: its value outside the window, NaN at an end of the sweep. With `iterate.follow` "
+                  "each run starts from the previous one as in the line"),
+    COLUMN("low_inside", NUMBER(window_row, low_inside), "in the window, as the attractor says", SOURCE,
+           .doc = "the value of that bracket inside the window"),
+    COLUMN("high_inside", NUMBER(window_row, high_inside), "in the window, as the attractor says", SOURCE,
+           .doc = "bracket of the upper edge, likewise: its value inside the window"),
     COLUMN("high_outside", NUMBER(window_row, high_outside),
-           "above the window, as the attractor says; NaN: end of the sweep", SOURCE),
-    COLUMN("multiplier", COMPLEX(window_row, multiplier), "largest multiplier of the cycle", SOURCE),
+           "above the window, as the attractor says; NaN: end of the sweep", SOURCE,
+           .doc = "its value outside the window; NaN at an end of the sweep"),
+    COLUMN("multiplier", COMPLEX(window_row, multiplier), "largest multiplier of the cycle", SOURCE,
+           .doc = "the largest multiplier of the cycle at the task"),
     COLUMN("map_low", NUMBER(window_row, map_low),
-           "closed form of the map, with one impact: along d exact, beyond grazing to leading order; else NaN", SOURCE),
+           "closed form of the map, with one impact: along d exact, beyond grazing to leading order; else NaN", SOURCE,
+           .doc = "for cycles with one impact the lower edge in the closed form of the map: exact along `model.d`, to "
+                  "leading order along `grazing.beyond`; NaN for all others"),
     COLUMN("map_high", NUMBER(window_row, map_high),
-           "closed form of the map, with one impact: along d exact, beyond grazing to leading order; else NaN", SOURCE),
+           "closed form of the map, with one impact: along d exact, beyond grazing to leading order; else NaN", SOURCE,
+           .doc = "the upper edge, likewise"),
     COLUMN("reason", TEXT(window_row, reason, DIAGRAM_REASON_BYTES), "why an edge is not located; empty where both are",
            SOURCE),
 };
 
-/* What ends a window has different names for maps and motions. */
+/* What ends a window has different words for maps and motions. */
+#define EDGES(words, what)                                                                                             \
+  COLUMN("low_kind", WORD(window_row, low_kind, words), "what ends it there", SOURCE, .doc = what),                    \
+      COLUMN("high_kind", WORD(window_row, high_kind, words), "what ends it there", SOURCE,                            \
+             .doc = "what ends it at the upper edge, likewise")
+
+static const column map_columns[] = {EDGES(
+    map_edge_names,
+    "of maps, what ends it at the lower edge: `border`: border collision, another iterate "
+    "reaches the border; `open`: the window extends beyond the search; `none` if not located; `zero` is not used")};
+static const column motion_columns[] = {EDGES(
+    motion_edge_names,
+    "of motions, the same in the words of `/branch/special_kind`; `regular`: the window extends beyond the search")};
+
+enum { ALL_WINDOWS, WINDOWS_OF_MAPS, WINDOWS_OF_MOTIONS };
+
+#define LIST .group = "window", .row_axis = "window_row"
+
+const column_list diagram_window_lists[] = {
+    [ALL_WINDOWS] = {LIST, COLUMNS(columns),
+                     .doc = "With `windows: true`, one row for each window along the last sweep, in all lines of a "
+                            "grid. A window gives one row even if\n"
+                            "transients hide its period at some tasks:\n"},
+    [WINDOWS_OF_MAPS] = {LIST, COLUMNS(map_columns)},
+    [WINDOWS_OF_MOTIONS] = {LIST, COLUMNS(motion_columns)},
+    {0}};
+
 static void lay_out(table *t, const study *s) {
-  size_t count;
-  const char *const *names = window_edge_names(s, &count);
-  const column edge = {
-      .type = COLUMN_ENUM, .names = names, .name_count = count, .long_name = "what ends it there", SOURCE};
-  column low = edge, high = edge;
-  low.name = "low_kind";
-  low.member = COLUMN_MEMBER(window_row, low_kind, int, unsigned);
-  high.name = "high_kind";
-  high.member = COLUMN_MEMBER(window_row, high_kind, int, unsigned);
-  *t = (table){.group = "window", .row_axis = "window_row"};
-  table_add(t, columns, sizeof columns / sizeof *columns, NULL, 0);
-  table_add(t, &low, 1, NULL, 0);
-  table_add(t, &high, 1, NULL, 0);
+  const bool maps = model_has(s, MODEL_MAP);
+  table_add(t, &diagram_window_lists[ALL_WINDOWS], NULL, 0);
+  table_add(t, &diagram_window_lists[maps ? WINDOWS_OF_MAPS : WINDOWS_OF_MOTIONS], NULL, 0);
   table_lay_out(t);
 }
 

@@ -12,40 +12,44 @@ const char *const curve_outcome_names[CURVE_OUTCOMES] = {
 
 #define CURVE .source = "F(z, p) = 0"
 
-static const column end_columns[] = {
+const column curve_end_columns[CURVE_END_COLUMNS] = {
     COLUMN("curve_end_special", INTEGER(curve_end, special), "special point of the task that the curve goes through",
            CURVE),
-    COLUMN("curve_end_part", INTEGER(curve_end, part), "part of the curve", CURVE),
-    COLUMN("curve_end_outcome", WORD(curve_end, outcome, curve_outcome_names), "how it ended", CURVE),
+    COLUMN("curve_end_part", INTEGER(curve_end, part), "part of the curve", CURVE,
+           .doc = "part of the curve; a closed curve has part 0 only"),
+    COLUMN("curve_end_outcome", WORD(curve_end, outcome, curve_outcome_names), "how it ended", CURVE,
+           .doc = "as `/branch/outcome`: `bound` is one of the second parameter, `ended` one of the first "
+                  "(`first_low`, `first_high`); `not_converged` also if a curve ends at a point that is special twice, "
+                  "`ended` also if the criterion of grazing cannot be evaluated"),
     COLUMN("curve_end_reason", TEXT(curve_end, reason, CURVE_REASON_BYTES),
-           "why; empty when the outcome speaks for itself", CURVE),
-    COLUMN("curve_end_points", INTEGER(curve_end, points), "number of its points", .source = "count"),
+           "why; empty when the outcome speaks for itself", CURVE,
+           .doc = "what failed last; empty if the outcome needs no reason"),
+    COLUMN("curve_end_points", INTEGER(curve_end, points), "number of its points", .source = "count",
+           .doc = "number of its points, folds of the curve included"),
 };
 
-static const column point_columns[] = {
+const column curve_point_columns[CURVE_POINT_COLUMNS] = {
     COLUMN("curve_special", INTEGER(curve_point, special), "special point of the task that the curve goes through",
            CURVE),
     COLUMN("curve_part", INTEGER(curve_point, part),
-           "0: from there towards larger values of the second parameter, 1: towards smaller ones", CURVE),
-    COLUMN("curve_parameter", NUMBER(curve_point, parameter), "the key that is followed", CURVE),
-    COLUMN("curve_second", NUMBER(curve_point, second), "the second key", CURVE),
+           "0: from there towards larger values of the second parameter, 1: towards smaller ones", CURVE,
+           .doc = "0: towards larger values of the second parameter, 1: towards smaller ones; both begin with the "
+                  "special point, or the grazing point of the task"),
+    COLUMN("curve_parameter", NUMBER(curve_point, parameter), "the key that is followed", CURVE,
+           .doc = "the parameter that the family is followed in; its key is the attribute `long_name`"),
+    COLUMN("curve_second", NUMBER(curve_point, second), "the second key", CURVE,
+           .doc = "the second parameter; its key is the attribute `long_name`"),
     COLUMN("curve_period", NUMBER(curve_point, period), "period", CURVE),
 };
 
-#define COUNT(columns) (sizeof(columns) / sizeof *(columns))
-
-void curve_trace_lay_out(const curve_tables *k, tail *points, tail *ends) {
-  const size_t first = k->special ? 0 : 1; /* the special point's column leads both lists */
-  kind_lay_out_tail(points, k->group, "curve_row", "curve_offset",
-                    "points of a task's curves: from its offset up to the next", point_columns + first,
-                    COUNT(point_columns) - first, NULL, 0);
-  table_add(&points->records, k->own, k->own_count, k->axes, k->axis_count);
-  table_lay_out(&points->records);
-  table_put_long_name(&points->records, "curve_parameter", k->followed);
-  table_put_long_name(&points->records, "curve_second", k->traced);
-  kind_lay_out_tail(ends, k->group, "curve_end_row", "curve_end_offset",
-                    "ends of a task's curves: from its offset up to the next", end_columns + first,
-                    COUNT(end_columns) - first, NULL, 0);
+void curve_trace_lay_out(const column_list lists[CURVE_LISTS], const char *followed, const char *traced,
+                         const table_axis *axes, size_t axis_count, tail tails[CURVE_TAILS]) {
+  kind_lay_out_tail(&tails[0], &lists[0], NULL, 0);
+  table_add(&tails[0].records, &lists[1], axes, axis_count);
+  table_lay_out(&tails[0].records);
+  table_put_long_name(&tails[0].records, "curve_parameter", followed);
+  table_put_long_name(&tails[0].records, "curve_second", traced);
+  kind_lay_out_tail(&tails[1], &lists[2], NULL, 0);
 }
 
 /* Whether the first parameter leaves its bounds; says so. */

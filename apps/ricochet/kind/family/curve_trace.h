@@ -3,7 +3,7 @@
 #ifndef RICOCHET_APP_CURVE_TRACE_H
 #define RICOCHET_APP_CURVE_TRACE_H
 
-#include "branch_family.h"
+#include "family_task.h"
 #include "kind/kind.h"
 
 /** Outcomes of what is followed: how its curve ended, and that it never began. */
@@ -40,19 +40,23 @@ typedef struct curve_trace {
   ric_status status;                        /* of the points: RIC_OK or RIC_ENOMEM */
 } curve_trace;
 
-/** The tables of curves. Texts and columns are borrowed. */
-typedef struct curve_tables {
-  const char *group;             /* of the result */
-  const char *followed, *traced; /* names of the parameters */
-  bool special;                  /* with the special point that the curve goes through */
-  const column *own;             /* [own_count] further columns of the points */
-  size_t own_count;
-  const table_axis *axes; /* [axis_count] of these */
-  size_t axis_count;
-} curve_tables;
+/** The columns of points and of ends. The first one of both is the special point that a curve goes through, which kinds
+ *  without special points leave out. */
+enum { CURVE_POINT_COLUMNS = 5, CURVE_END_COLUMNS = 5 };
+extern const column curve_point_columns[CURVE_POINT_COLUMNS], curve_end_columns[CURVE_END_COLUMNS];
 
-/** Lays out points and ends. */
-void curve_trace_lay_out(const curve_tables *tables, tail *points, tail *ends);
+/** Lists of a kind's curves: points, what the kind has of them besides, ends; and their two tables, points and ends. */
+enum { CURVE_LISTS = 3, CURVE_TAILS = 2 };
+
+/** Long names of their offsets. */
+#define CURVE_POINTS_MEANING "points of a task's curves: from its offset up to the next"
+#define CURVE_ENDS_MEANING   "ends of a task's curves: from its offset up to the next"
+
+/** Lays out both tables.
+ *  @param followed  name of the parameter, borrowed; @param traced  that of the second one, borrowed
+ *  @param axes  [axis_count] of the kind's own columns */
+void curve_trace_lay_out(const column_list lists[CURVE_LISTS], const char *followed, const char *traced,
+                         const table_axis *axes, size_t axis_count, tail tails[CURVE_TAILS]);
 
 /** Adds a point, unless the first parameter leaves its bounds or there is no memory.
  *  @param point  the kind's struct of a point, its own members set; those of curve_point are set here, from the

@@ -39,6 +39,9 @@ typedef struct grazing_curve_point {
 /** Numbers of the section's coordinates. */
 double grazing_coordinates(const study_values *v);
 
+/** The columns of its tables (kind.h). */
+extern const column_list grazing_lists[];
+
 /** Lays out the row and the tails.
  *  @param followed  name of the parameter, borrowed; @param traced  that of the second one, borrowed; NULL without
  *                   curves */

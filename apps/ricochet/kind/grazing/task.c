@@ -101,7 +101,7 @@ static int grazing_evaluate(worker *w, const kind_plan *plan, task_range tasks, 
   study_values_at(w->task.values, tasks.first);
   g.found = grazing_clear_row(&plan->rows, row);
   const ric_status status = compute(&w->task, &g, tails);
-  branch_family_close(&w->task.family);
+  family_task_close(&w->task);
   if (status == RIC_ESTOPPED)
     return -1;
   if (status != RIC_OK) { /* of a task that does not fit, nothing is kept */
@@ -137,6 +137,7 @@ const kind kind_grazing = {.choice = {.name = "grazing",
                                       .wants = family_wants,
                                       .check = family_check},
                            .show = grazing_show,
+                           .lists = {grazing_lists},
                            .plan = grazing_plan,
                            .open = grazing_open,
                            .evaluate = grazing_evaluate,

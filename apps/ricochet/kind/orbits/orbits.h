@@ -12,16 +12,9 @@ extern const char *const orbit_outcome_names[RIC_OUTCOME_COUNT];
 
 /** A row: the members that its columns name. */
 typedef struct orbits_row {
-  int outcome;
+  const ric_orbit *orbit;
   const char *reason;
-  const double *q, *v, *impulse;
-  double energy, residual, clearance, clearance_time;
-  long long clearance_particle;
-  double condition;
-  long long mode, harmonic;
-  /* of the verifier */
-  int verified;
-  double closure_error;
+  const ric_verification *verification;
   /* of the multipliers */
   int stable;
   const char *stable_reason;
@@ -33,15 +26,15 @@ typedef struct orbits_row {
   double ritz_frequency, ritz_error, ritz_error_v, ritz_defect;
 } orbits_row;
 
+/** The columns of its tables (kind.h). */
+extern const column_list orbits_lists[], orbits_special_lists[];
+
 /** Lays out the row. */
 void orbits_lay_out(const study_values *v, table *t);
 
 /** The result of a verification without an answer: `run_failed` with the error's message.
  *  @returns RIC_OK or RIC_ESTOPPED */
 ric_status orbits_verified(ric_status status, const ric_error *error, ric_verification *verification);
-
-/** What every orbit has in its row, and what the verifier found of it; of the rest nothing. Borrows all of them. */
-orbits_row orbits_row_of(const ric_orbit *orbit, const char *reason, const ric_verification *verification);
 
 /* Resonances, singular points and critical parameters along the sweep of an `orbits` study: the table `special`. */
 

@@ -216,7 +216,7 @@ static const char *reason_of(const worker *w) {
 }
 
 static void fill_row(worker *w, const table *t, unsigned char *row) {
-  orbits_row found = orbits_row_of(&w->orbit, reason_of(w), &w->verification);
+  orbits_row found = {.orbit = &w->orbit, .reason = reason_of(w), .verification = &w->verification};
   stability_put(&w->stability, &found);
   found.ritz_functions = (long long)w->ritz.functions;
   found.ritz_frequency = w->ritz.frequency;

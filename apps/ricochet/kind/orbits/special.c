@@ -83,13 +83,21 @@ int orbits_special_plan(const study *s, const study_values *v, message *why) {
 static const column columns[] = {
     COLUMN("kind", WORD(special_row, kind, special_names),
            "resonance of a mode, zero of the contact determinant, or where multipliers leave the circle or come back",
-           .source = "[JAP] (11)-(12), (16)"),
-    COLUMN("parameter", NUMBER(special_row, parameter), "value of the swept parameter", .source = "[JAP] (11)-(12)"),
+           .source = "[JAP] (11)-(12), (16)",
+           .doc = "`resonance` of a mode, `singular` contact matrix; with `stable` or `multipliers` also the critical "
+                  "parameters, at which multipliers leave the unit circle or return to it: `plus_one` and `minus_one`, "
+                  "a pair at that point, and `collision` of two pairs. They are located between neighbours of a grid "
+                  "with as many points as the sweep"),
+    COLUMN("parameter", NUMBER(special_row, parameter), "value of the swept parameter", .source = "[JAP] (11)-(12)",
+           .doc = "value of the swept parameter there, in increasing order"),
     COLUMN("outcome", WORD(special_row, outcome, orbit_outcome_names), "outcome of the orbit exactly there",
-           .source = "[JAP] (9)"),
-    COLUMN("mode", INTEGER(special_row, mode), "resonant mode, else -1", .source = "[JAP] (12)"),
+           .source = "[JAP] (9)",
+           .doc = "outcome of the pattern's orbit exactly there: `grazing` or `resonant` if a resonance affects it, "
+                  "`singular` if amplitudes blow up, `resonant` if the singular equations are solvable"),
+    COLUMN("mode", INTEGER(special_row, mode), "resonant mode, else -1", .source = "[JAP] (12)",
+           .doc = "the resonant mode; -1 for points that are no resonance"),
     COLUMN("harmonic", INTEGER(special_row, harmonic), "oscillations of the mode per period, else 0",
-           .source = "[JAP] (12)"),
+           .source = "[JAP] (12)", .doc = "its oscillations per period; 0 for points that are no resonance"),
 };
 
 static const column critical_columns[] = {
@@ -97,17 +105,27 @@ static const column critical_columns[] = {
            "critical multiplier on the unit circle, in the upper half plane; NaN for other points",
            .source = "[JAP] (16)"),
     COLUMN("change", WORD(special_row, change, change_names), "way of the multipliers as the parameter grows",
-           .source = "[JAP] (16)"),
+           .source = "[JAP] (16)",
+           .doc = "`outwards`: the number of multipliers outside the unit circle increases with the parameter; "
+                  "`inwards`: it decreases; `none` for other points"),
     COLUMN("uncertainty", NUMBER(special_row, uncertainty),
            "of a critical parameter: half the width of its last bracket, or rounding; NaN for other points",
-           .source = "[JAP] (16)"),
+           .source = "[JAP] (16)",
+           .doc = "of a critical parameter: half the width of its last bracket, or the rounding error in it; NaN for "
+                  "other points"),
 };
 
+#define LIST .group = "special", .row_axis = "special_point"
+
+const column_list orbits_special_lists[] = {
+    {LIST, COLUMNS(columns), .doc = "With `special_points: true`, along the one swept parameter (gamma or period):\n"},
+    {LIST, COLUMNS(critical_columns), .doc = "With `stable` or `multipliers`, too:\n"},
+    {0}};
+
 static void lay_out(table *t, bool critical) {
-  *t = (table){.group = "special", .row_axis = "special_point"};
-  table_add(t, columns, sizeof columns / sizeof *columns, NULL, 0);
+  table_add(t, &orbits_special_lists[0], NULL, 0);
   if (critical)
-    table_add(t, critical_columns, sizeof critical_columns / sizeof *critical_columns, NULL, 0);
+    table_add(t, &orbits_special_lists[1], NULL, 0);
   table_lay_out(t);
 }
 

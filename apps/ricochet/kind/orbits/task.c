@@ -168,7 +168,7 @@ static int orbits_evaluate(worker *w, const kind_plan *plan, task_range tasks, u
   if (verify(w) == RIC_ESTOPPED ||
       stability_find(&w->stability, w->solver, &w->model.chain, w->pattern, &w->orbit) == RIC_ESTOPPED)
     return -1;
-  orbits_row found = orbits_row_of(&w->orbit, reason_of(w), &w->verification);
+  orbits_row found = {.orbit = &w->orbit, .reason = reason_of(w), .verification = &w->verification};
   stability_put(&w->stability, &found);
   row_fill(&plan->rows, row, &found);
   return 0;
@@ -209,6 +209,7 @@ const kind kind_orbits = {.choice = {.name = "orbits",
                                      .groups = "pattern|orbits",
                                      .features = MODEL_SYSTEM,
                                      .check = orbits_check},
+                          .lists = {orbits_lists, orbits_special_lists},
                           .variant = by_method,
                           .plan = orbits_plan,
                           .open = orbits_open,

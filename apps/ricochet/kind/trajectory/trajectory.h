@@ -46,6 +46,9 @@ typedef struct trajectory_shape {
 
 trajectory_shape trajectory_shape_of(const study_values *v);
 
+/** The columns of its tables (kind.h). */
+extern const column_list trajectory_lists[];
+
 /** Lays out the row and the tails. */
 void trajectory_lay_out(const trajectory_shape *shape, kind_plan *plan);
 
