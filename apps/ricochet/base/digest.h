@@ -1,5 +1,5 @@
-/* The digest that checkpoints, studies and results are told apart and checked by: FNV-1a, 64 bits
- * (draft-eastlake-fnv). Any single changed byte changes it. About 1 GB/s. */
+/* Digest that identifies studies and verifies checkpoints and results: FNV-1a, 64 bits (draft-eastlake-fnv). Any single
+ * changed byte changes it. About 1 GB/s. */
 #ifndef RICOCHET_APP_DIGEST_H
 #define RICOCHET_APP_DIGEST_H
 

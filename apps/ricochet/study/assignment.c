@@ -11,8 +11,8 @@ typedef struct step {
   size_t index;
 } step;
 
-/* A place of the tree that holds a node: pair or item `at` of a collection. Indices, because nodes move as the tree
- * grows. The root is held by no collection. */
+/* Position of a node in the tree: pair or item `at` of a collection. Indices, because nodes move in memory as the tree
+ * grows. The root is in no collection. */
 typedef struct slot {
   int collection;
   size_t at;
@@ -30,7 +30,7 @@ static bool is_name_char(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
 }
 
-/* Reads one step and moves the cursor behind it; false when the path is malformed there. */
+/* Reads one step and advances the cursor past it; false if the path is malformed there. */
 static bool read_step(const char *begin, const char **cursor, const char *end, step *out) {
   const char *p = *cursor;
   if (p > begin && p < end && *p == '[') {
@@ -65,7 +65,7 @@ static int no_memory(const edit *e) {
   return refuse(e->why, EXIT_RUN, "%s: out of memory", e->place.name);
 }
 
-/* Adds `name: null` to a mapping; the null is what the next step turns into a mapping, or the value replaces. */
+/* Adds `name: null` to a mapping. The next step turns the null into a mapping, or the value replaces it. */
 static int add_key(const edit *e, int mapping, const step *name) {
   yaml_document_t *tree = &e->d->tree;
   const int key = yaml_document_add_scalar(tree, NULL, (const unsigned char *)name->name, (int)name->length,
@@ -119,7 +119,7 @@ static int step_into_item(const edit *e, int node, const step *item, const char 
   return 0;
 }
 
-/* Finds, and where needed creates, the slot that the path names. */
+/* Finds the slot of the path; creates missing mappings. */
 static int find_slot(const edit *e, slot *here) {
   int root = DOCUMENT_ROOT;
   *here = (slot){0};
@@ -170,13 +170,13 @@ static int copy_node(document *to, const document *from, int node) {
   case YAML_MAPPING_NODE:
     copy = yaml_document_add_mapping(&to->tree, NULL, n->data.mapping.style);
     return copy && copy_pairs(to, copy, from, n) ? copy : 0;
-  default: /* scalars: the guard has let no other kind through */
+  default: /* scalars: the guard refuses all other types of node */
     return yaml_document_add_scalar(&to->tree, NULL, n->data.scalar.value, (int)n->data.scalar.length,
                                     n->data.scalar.style);
   }
 }
 
-/* Registers an assignment, so that the nodes added from now on are known to be its. @param place  owned from now on */
+/* Registers an assignment: all nodes added after this call belong to it. @param place  owned after this call */
 static bool register_assignment(document *d, char *place) {
   document_assignment *grown = place ? realloc(d->assignments, (d->assignment_count + 1) * sizeof *grown) : NULL;
   if (!grown) {
@@ -188,7 +188,7 @@ static bool register_assignment(document *d, char *place) {
   return true;
 }
 
-/* "--set path=value" of an assignment; a list of a million elements has no place in a message. */
+/* "--set path=value" of an assignment, shortened: the value may be a list of a million elements. */
 static char *place_of_set(const char *assignment) {
   const size_t length = strlen(assignment);
   const size_t size = length < 240 ? length + 8 : 240;
@@ -200,7 +200,7 @@ static char *place_of_set(const char *assignment) {
   return place;
 }
 
-/* Puts a node where the path leads. @param node  0: there was no memory for it */
+/* Puts a node at the end of the path. @param node  0: its allocation failed */
 static int put_node(const edit *e, int node) {
   slot here;
   const int code = node ? find_slot(e, &here) : no_memory(e);
@@ -214,7 +214,7 @@ static int put_text(const edit *e) {
   document *value = NULL;
   const char *text = e->end + 1;
   if (text[strspn(text, " ")] == 0)
-    return source_refuse(&e->place, 0, e->why, "no value behind '='; write null or '' where one of them is meant");
+    return source_refuse(&e->place, 0, e->why, "no value after '=', expected one; null and '' are written out");
   int code = document_read(e->place, text, strlen(text), &value, e->why);
   if (!code)
     code = put_node(e, copy_node(e->d, value, DOCUMENT_ROOT));

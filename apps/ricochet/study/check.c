@@ -1,4 +1,4 @@
-/* What the schema's rows cannot say of every study: missing keys, keys of another kind or model, lengths of lists. */
+/* Checks of every study that concern more than one key: missing keys, keys of another kind or model, list lengths. */
 #include "check.h"
 
 #include <stdarg.h>
@@ -37,7 +37,7 @@ int check_refuse(const study *s, message *why, const char *format, ...) {
   return code;
 }
 
-/* A value of the file that is not the fallback. */
+/* The node of a given value that differs from the default; 0 for none. */
 static int find_other_given(const study *s, const document *d, study_key key, double fallback, char *label, size_t size,
                             double *value) {
   const typed_value *given = study_value(s, key);
@@ -109,7 +109,7 @@ static int check_kind(const study *s, const document *d, message *why) {
   return 0;
 }
 
-/* A word, of a key or of the kind, that needs features which the model has not. */
+/* Refuses a word, of a key or the kind itself, that needs features which the model lacks. */
 static int refuse_word(const study *s, const document *d, study_key key, unsigned needs, message *why) {
   char models[96];
   schema_models_with(s->schema, needs, models, sizeof models);
@@ -117,7 +117,7 @@ static int refuse_word(const study *s, const document *d, study_key key, unsigne
                          key->path, study_word(s, key), models, s->model->name);
 }
 
-/* The keys are of the model's type, and so are the kind and the words among their values. */
+/* The model accepts the keys, and has the features that the kind and the words of keys need. */
 static int check_model(const study *s, const document *d, message *why) {
   if (s->kind->features && !(s->kind->features & s->model->features))
     return refuse_word(s, d, s->schema->kind, s->kind->features, why);

@@ -1,8 +1,8 @@
-/* The inside of a study, for what reads and checks one: this room, and the checks of kinds and models.
+/* The internals of a study, for the code that reads and checks one: this folder, and the checks of kinds and models.
  *
  * study_parse reads the tree (document.h), applies `--set`, reads each key against its row (typed.c), then the sweeps
- * (sweep.c), lets the model and the kind fill in what is left to them, then checks what concerns several keys at once
- * (check.c), last the model and the kind; the tree goes when the study is complete. */
+ * (sweep.c), calls `complete` of the model and the kind, then checks that keys fit together (check.c), last `check` of
+ * the model and the kind. The tree is freed when the study is complete. */
 #ifndef RICOCHET_APP_CHECK_H
 #define RICOCHET_APP_CHECK_H
 
@@ -19,7 +19,7 @@ typedef struct typed_value {
   char *text;      /* word or text outside a list */
   int node;        /* in the document, while there is one; 0 for a default */
   size_t line;     /* of the key in the file; 0 for a default or an assignment */
-  char *assigned;  /* "--set path=value" that gave it, NULL for none */
+  char *assigned;  /* the "--set path=value" that gives it, NULL for none */
 } typed_value;
 
 /** Reads the value of a key.
@@ -39,7 +39,7 @@ void typed_clear(typed_value *value);
 /** Node of element `i` of a value that was given. */
 int typed_item_node(const document *d, const typed_value *value, size_t i);
 
-/** Refuses a computed value that does not meet the row, naming it. @param node  where it was given. */
+/** Refuses a computed value outside the range of the row. @param node  whose place the message names */
 int typed_check(const document *d, int node, study_key row, const char *label, double value, message *why);
 
 /* --- a study --- */
@@ -47,15 +47,15 @@ int typed_check(const document *d, int node, study_key row, const char *label, d
 enum { STUDY_SLOTS = 512 /* a power of two, well above the number of keys */, STUDY_MAX_MOVED = 4 };
 
 typedef struct sweep_entry {
-  study_sweep view;           /* what study_sweep_at shows; its values are the array below */
+  study_sweep view;           /* what study_sweep_at returns; its values are the array below */
   double *values;             /* [view.points], owned */
   uint64_t stride;            /* tasks between two values: the product of the points of all later sweeps */
   int nodes[SWEEP_KEY_COUNT]; /* values of its keys in the document while there is one; 0 where not given */
 } sweep_entry;
 
-/* A number that the kind moves while a task runs. */
+/* A number that varies while a task runs, such as the continuation parameter. */
 typedef struct moved_number {
-  study_key by; /* whose word names it */
+  study_key by; /* the key whose word names it */
   study_parameter parameter;
   double start; /* its value at the start of a task */
 } moved_number;
@@ -76,9 +76,9 @@ struct study {
 /** Place of a key among the values. */
 size_t study_place_of(const study *s, study_key key);
 
-/* --- what checks ask --- */
+/* --- queries --- */
 
-/** What a key holds. */
+/** Value of a key. */
 const typed_value *study_value(const study *s, study_key key);
 /** Whether a key has a value other than null. */
 bool study_has(const study *s, study_key key);
@@ -90,15 +90,15 @@ bool study_is_kind(const study *s, const char *kind);
 
 /** The sweep over an element of a key (item -1: over a scalar), NULL when there is none. */
 const sweep_entry *sweep_over(const study *s, study_key key, long item);
-/** Node that says value `i` of a sweep. */
+/** Node that gives value `i` of a sweep. */
 int sweep_value_node(const document *d, const sweep_entry *e, size_t i);
 
-/** Node that gives a key or sweeps it, 0 when it has its default. */
+/** Node that gives a key or sweeps it, 0 if it has its default. */
 int check_node_of_key(const study *s, study_key key);
-/** Node of a section, or of a sweep that stands for it; 0 when nothing of it is given. */
+/** Node of a section, or of a key of it that is swept; 0 when nothing of it is given. */
 int check_node_of_section(const study *s, const document *d, const char *section);
 
-/** Refuses what no key of the file is to blame for. @returns EXIT_USAGE */
+/** Refuses a study, with its name as the place: for faults that no single key causes. @returns EXIT_USAGE */
 int check_refuse(const study *s, message *why, const char *format, ...) __attribute__((format(printf, 3, 4)));
 
 /** Finds a value of a key, given or swept, that is not its default.
@@ -108,7 +108,7 @@ int check_find_other(const study *s, const document *d, study_key key, char *lab
 
 /* --- numbers by their names --- */
 
-/** Who asks for a parameter, for messages. */
+/** The words of messages about a parameter, by its use. */
 typedef struct parameter_use {
   const char *label;   /* "sweep[1].parameter", "branch.parameter" */
   const char *noun;    /* "sweep": unknown sweep parameter */
@@ -122,26 +122,26 @@ typedef struct parameter_use {
  *  @returns 0, or EXIT_USAGE for a name that is not one number that can vary, with the nearest one. */
 int parameter_find(const study *s, const document *d, const parameter_use *use, const char *name,
                    study_parameter *parameter, message *why);
-/** Gives a key that was left out the value that its use says first, as if it stood in the study.
+/** Gives an omitted key the first value of its sweep, or the start of its branch, as if the study gave it.
  *  @param key_node  of the word `parameter`, whose line is kept */
 int parameter_supply(study *s, const document *d, const parameter_use *use, int key_node, study_key key, double value,
                      message *why);
 
 /* --- what `complete` may change --- */
 
-/** Says that the kind moves a number while a task runs. @param start  its value at the start of every task */
+/** Declares that a number varies while a task runs. @param start  its value at the start of every task */
 void study_move(study *s, study_key by, const study_parameter *parameter, double start);
-/** Fills in a number, or a word, of a key that has a value or a default, not given by the study. */
+/** Sets the number, or the word, of a key that has a value or a default, without marking it as given by the study. */
 void study_fill_number(study *s, study_key key, double value);
 int study_fill_word(study *s, study_key key, const char *word, message *why);
 
-/* --- inside the room --- */
+/* --- for this folder --- */
 
-/** Refuses a key that the section does not know, naming the nearest or all. @param section  "" for the top level. */
+/** Refuses an unknown key of a section, naming the nearest one or all. @param section  "" for the top level. */
 int refuse_unknown_key(const study *s, const document *d, int key, const char *section, message *why);
 /** Reads `sweep`, one entry or a list of them, and gives omitted swept keys their first value. @param node  0: none. */
 int sweep_read(study *s, const document *d, int node, message *why);
-/** Checks what concerns several keys at once: missing keys, kind and model, lengths of lists; then what these check. */
+/** Checks missing keys, keys of another kind or model, and lengths of lists; then calls `check` of model and kind. */
 int study_check(const study *s, const document *d, message *why);
 
 #endif

@@ -99,7 +99,7 @@ static int compare_keys(const void *left, const void *right) {
   return a->node < b->node ? -1 : a->node > b->node;
 }
 
-/* Sorting brings equal keys together, so that a mapping of a million keys takes no longer than reading it.
+/* Sorting makes equal keys neighbours: a mapping of a million keys is checked in the time of reading it.
  * @param keys  [pairs of the mapping], scratch */
 static int check_keys(const document *d, int mapping, key_text *keys, message *why) {
   const yaml_node_t *n = document_node(d, mapping);
@@ -119,7 +119,7 @@ static int check_keys(const document *d, int mapping, key_text *keys, message *w
     char name[64];
     source_quote(keys[i].text, keys[i].length, name, sizeof name);
     return document_refuse(d, keys[i].node, why,
-                           "duplicate key '%s', first on line %zu: a key stands once in a mapping", name,
+                           "duplicate key '%s', first on line %zu: expected each key once in a mapping", name,
                            document_node(d, keys[i - 1].node)->start_mark.line + 1);
   }
   return 0;
@@ -184,10 +184,10 @@ void document_destroy(document **d) {
   *d = NULL;
 }
 
-/* --- where a text came from --- */
+/* --- origins of texts --- */
 
-/* Reads up to one byte more than a study may have, so that what is too large is seen to be. Not by asking for the size
- * first: a study may come through a pipe. */
+/* Reads at most one byte more than the limit, which detects files that are too large. The size cannot be asked for
+ * beforehand: a study may come through a pipe. */
 static int read_stream(const char *path, FILE *file, char **text, size_t *length, message *why) {
   char *bytes = malloc(STUDY_MAX_BYTES + 1);
   if (!bytes)
@@ -197,7 +197,7 @@ static int read_stream(const char *path, FILE *file, char **text, size_t *length
   if (ferror(file))
     code = refuse(why, EXIT_FILES, "%s: cannot be read: %s", path, strerror(errno));
   else if (*length > STUDY_MAX_BYTES)
-    code = refuse(why, EXIT_USAGE, "%s: larger than %d MiB, the most a study may have", path, STUDY_MAX_BYTES >> 20);
+    code = refuse(why, EXIT_USAGE, "%s: larger than %d MiB, the limit for a study", path, STUDY_MAX_BYTES >> 20);
   if (code) {
     free(bytes);
     return code;

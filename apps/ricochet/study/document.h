@@ -1,8 +1,8 @@
 /* The document tree of a study: libyaml's, read through the guard, with `--set` assignments applied to it, and with the
  * origin of every node known, so that each refusal can begin with its place.
  *
- * Nodes are called by libyaml's index, from 1 (the root); 0 is "no node". An assignment adds nodes behind those of the
- * file, which is how a node's index tells where it came from. */
+ * Nodes are identified by libyaml's index, from 1 (the root); 0 is "no node". An assignment adds nodes after those of
+ * the file, so the index of a node determines its origin. */
 #ifndef RICOCHET_APP_DOCUMENT_H
 #define RICOCHET_APP_DOCUMENT_H
 
@@ -12,7 +12,7 @@
 
 #include "study.h"
 
-/* Where a text came from, as messages begin: `FILE:LINE:`, or `--set path=value:`, whose lines are not worth naming. */
+/* Origin of a text, with which messages begin: `FILE:LINE:`, or `--set path=value:` without a line. */
 
 typedef struct source {
   const char *name; /* borrowed */
@@ -66,7 +66,7 @@ bool document_is_null(const document *d, int node);
 
 /** Line of the node in the file, from 1; 0 when an assignment added it. */
 size_t document_line(const document *d, int node);
-/** "--set path=value" of the assignment that added the node, NULL when it stands in the file. */
+/** "--set path=value" of the assignment that added the node, NULL for a node of the file. */
 const char *document_assigned_by(const document *d, int node);
 
 /** What a node holds, for messages: `0.1x`, `"0.1" (a quoted string)`, `null`, `a list`, `a mapping`. */
@@ -76,15 +76,15 @@ void document_show(const document *d, int node, char *text, size_t size);
 int document_refuse(const document *d, int node, message *why, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 
-/* The document tree written out as YAML again: what a study with `--set` assignments really ran. */
+/* The document tree written out as YAML again: the study as run, `--set` assignments included. */
 
 /** Writes the tree as YAML text that reads back as the same values. Comments are gone, the layout is libyaml's.
  *  @param text  set to malloc'd text with a terminating 0; the caller frees
  *  @returns 0, or EXIT_RUN when out of memory. */
 int document_emit(const document *d, char **text, message *why);
 
-/* `--set path=value`: an edit of the document tree, made before anything is validated, so that it meets the same
- * checks, and the same messages, as a line of the file.
+/* `--set path=value`: an edit of the document tree, made before anything is validated, so that the same
+ * checks and messages apply to it as to a line of the file.
  *
  * The path is names joined by dots, list elements by index: `model.gamma`, `sweep[0].points`. The value is YAML, read
  * through the same guard as a file. Missing keys and sections are created; list elements must exist. */
@@ -92,21 +92,22 @@ int document_emit(const document *d, char **text, message *why);
 /** @param assignment  "path=value", copied. @returns 0, EXIT_USAGE, or EXIT_RUN when out of memory. */
 int document_assign(document *d, const char *assignment, message *why);
 
-/** The same for a value of the program. @param place  what messages about it begin with */
+/** The same for a value that the program assigns. @param place  how messages about it begin */
 int document_assign_value(document *d, const char *place, const study_assignment *value, message *why);
 
 /* What a text must pass before its document tree is built.
  *
- * libyaml's tree does not show a second document, resolves aliases (a few lines can stand for gigabytes), and grows
- * slow and deep on nested brackets. One pass over the parser's events, which come as they are read, refuses all of it
- * at the first offending line: so the tree is built from harmless text only, and code may recurse over it. */
+ * libyaml's tree hides a second document, resolves aliases (a few lines can expand to gigabytes), and becomes slow and
+ * deep on nested brackets. One pass over the parser's events refuses all of this at the first offending line. The tree
+ * is then built from harmless text only, and recursion over it is bounded. */
 
 /** Refuses more than STUDY_MAX_BYTES, text that is not UTF-8 or contains a NUL, that is not YAML, an empty text, a
  *  second document, anchors, aliases, tags, and nesting deeper than STUDY_MAX_DEPTH.
  *  @returns 0, EXIT_USAGE, or EXIT_RUN when out of memory. */
 int guard_text(const source *from, const char *text, size_t length, message *why);
 
-/** Starts a parser on UTF-8 text, which it borrows: left to guess, libyaml also takes UTF-16. False: out of memory. */
+/** Starts a parser on UTF-8 text, which it borrows: by default libyaml would accept UTF-16 as well. False: out of
+ * memory. */
 bool guard_start_parser(yaml_parser_t *parser, const char *text, size_t length);
 
 #endif

@@ -24,8 +24,8 @@ static int append(void *user, unsigned char *bytes, size_t count) {
   return 1;
 }
 
-/* Two styles only, because they read back as they were: an empty plain scalar would be written as an empty string in
- * places, folded text can change at its edges. */
+/* Plain and double-quoted only, because both read back unchanged: an empty plain scalar may be written as an empty
+ * string, and folded text can change at its ends. */
 static bool emit_scalar(yaml_emitter_t *emitter, const document *d, int node) {
   const yaml_node_t *n = document_node(d, node);
   const bool null = document_is_null(d, node);

@@ -64,8 +64,8 @@ static int check_node(scan *s, const yaml_event_t *event, const yaml_char_t *anc
 static int check_collection(scan *s, const yaml_event_t *event, const yaml_char_t *anchor, const yaml_char_t *tag,
                             message *why) {
   if (++s->depth > STUDY_MAX_DEPTH)
-    return source_refuse(s->from, event->start_mark.line + 1, why, "nested deeper than %d levels, which no study needs",
-                         STUDY_MAX_DEPTH);
+    return source_refuse(s->from, event->start_mark.line + 1, why,
+                         "nested deeper than %d levels, the limit for a study", STUDY_MAX_DEPTH);
   return check_node(s, event, anchor, tag, why);
 }
 

@@ -3,8 +3,8 @@
  *   KEY(KEY_TIME_SAMPLES, "time.samples", IS_INTEGER, DEFAULT("1001"), RANGE(2, 1e9), SHAPES, DOC("Number of states
  * ..."))
  *
- * and is the one place that knows a key; KEY_DEFINE and KEY_LIST make of it what C needs. KEY_GROUP, set
- * in the file, names the keys that kinds and types of model take together. */
+ * and is the only place that describes a key. KEY_DEFINE and KEY_LIST expand it to definitions and to a list.
+ * KEY_GROUP, set in the file, names a group of keys that kinds and types of model accept together. */
 #ifndef RICOCHET_APP_KEYS_H
 #define RICOCHET_APP_KEYS_H
 

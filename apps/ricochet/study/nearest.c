@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { LONGEST_NAME = 63 }; /* longer ones are near to no name of the table */
+enum { LONGEST_NAME = 63 }; /* longer ones are close to no name of the schema */
 
 static size_t least(size_t a, size_t b) {
   return a < b ? a : b;
@@ -34,7 +34,7 @@ static const char *last_name(const char *path) {
   return dot ? dot + 1 : path;
 }
 
-/* Distance of two paths: of the whole, or of their last names and one more for a name in the wrong section. */
+/* Distance of two paths: of the whole paths, or of their last names plus one for a name in the wrong section. */
 static size_t path_distance(const char *path, const char *known) {
   return least(edit_distance(path, known), edit_distance(last_name(path), last_name(known)) + 1);
 }
@@ -42,7 +42,7 @@ static size_t path_distance(const char *path, const char *known) {
 typedef struct search {
   const char *path;
   char best[LONGEST_NAME + 1];
-  size_t distance; /* twice as many as letters */
+  size_t distance; /* twice the edit distance, plus 1 in another section */
 } search;
 
 static bool in_one_section(const char *a, const char *b) {
@@ -50,7 +50,7 @@ static bool in_one_section(const char *a, const char *b) {
   return strcspn(b, ".") == length && strncmp(a, b, length) == 0;
 }
 
-/* Of names equally far, one in the same section is nearer. */
+/* Among names at equal distance, one in the same section is preferred. */
 static void consider(search *s, const char *known) {
   const size_t distance = 2 * path_distance(s->path, known) + !in_one_section(s->path, known);
   if (distance < s->distance) {
@@ -65,7 +65,7 @@ static void consider_section(const char *name, size_t length, void *user) {
   consider(user, known);
 }
 
-/* Up to a third of the name may be wrong: beyond, a suggestion is a guess. */
+/* Up to a third of the name may be wrong; beyond that no name is suggested. */
 static search begin(const char *path) {
   const size_t third = strlen(last_name(path)) / 3;
   return (search){.path = path, .distance = 2 * (1 + (third > 1 ? third : 1))};

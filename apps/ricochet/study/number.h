@@ -3,8 +3,9 @@
  *   [sign] digits [. digits] [e [sign] digits] [blanks pi]     1.5   -.5   1e-3   1.5 pi   -0.25 pi
  *   [sign] pi                                                  pi    -pi
  *
- * strtod alone would also take hexadecimal digits, `inf`, `nan` and trailing characters; YAML's own numbers know
- * octals, underscores and sexagesimals. None of these is a number here, so that a slip of the pen is never a value. */
+ * strtod alone would also accept hexadecimal digits, `inf`, `nan` and trailing characters; YAML's own
+ * numbers include octals, underscores and sexagesimals. All of these are refused, so that a typing error is never
+ * accepted as a value. */
 #ifndef RICOCHET_APP_NUMBER_H
 #define RICOCHET_APP_NUMBER_H
 

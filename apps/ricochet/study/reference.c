@@ -1,5 +1,5 @@
 /* The study-file reference, printed from the schema: a chapter for every kind of study and type of model. A table of
- * keys stands in the first chapter that takes them; later ones refer to it. */
+ * keys is printed in the first chapter whose kind or model accepts them; later chapters refer to it. */
 #include "schema.h"
 
 #include <string.h>
@@ -28,7 +28,7 @@ static void print_row(FILE *out, study_key key, const char *name) {
   fprintf(out, " | ");
 }
 
-/* Words that are not for every type of model. */
+/* Words that need a feature of the model. */
 static void print_word_models(FILE *out, const schema *t, study_key key) {
   const char *word = key->words;
   for (size_t i = 0; key->word_needs && *word; i++, word += strcspn(word, "|"), word += *word == '|') {
@@ -74,7 +74,7 @@ typedef struct chapters {
   const char *key; /* "kind", "model.type" */
 } chapters;
 
-/* The first choice that takes a key. */
+/* The first choice that accepts a key. */
 static const schema_choice *first_of(const chapters *c, study_key key) {
   const schema_choice *const *choice = c->choices;
   while (*choice && !c->takes(*choice, key))
@@ -86,7 +86,7 @@ static bool is_of_model(study_key key) {
   return strncmp(key->path, "model.", 6) == 0;
 }
 
-/* Keys of a section that belong to these chapters, and not to every study. */
+/* Keys of these chapters: not those of every study. */
 static bool is_in_chapters(const chapters *c, study_key key) {
   return *key->group && is_of_model(key) == (c->choices == c->schema->models);
 }
@@ -104,7 +104,7 @@ static void print_own_keys(FILE *out, const chapters *c, const schema_choice *ch
   }
 }
 
-/* The keys that it shares with an earlier one. */
+/* The keys that a choice shares with an earlier one. */
 static void print_shared_keys(FILE *out, const chapters *c, const schema_choice *choice, const schema_choice *earlier) {
   bool any = false;
   for (size_t i = 0; i < c->schema->key_count; i++) {
@@ -145,7 +145,7 @@ static void print_sweeps(FILE *out) {
           "\n## Sweeps\n\n"
           "`sweep` is one entry or a list of up to %d. Several span a grid, whose last entry varies fastest; the grid "
           "has fewer than\n2^40 points. A swept key may be left out of its section. An element of a list is swept by "
-          "its index, as in\n`model.floor[3]`, and must stand in the list. An entry gives either `values`, or `from`, "
+          "its index, as in\n`model.floor[3]`, and must exist in the list. An entry gives either `values`, or `from`, "
           "`to` and `points`.\n",
           STUDY_MAX_SWEEPS);
   print_head(out, false);

@@ -1,4 +1,4 @@
-/* Looking keys up, and the sentences about them: what a key allows, and which names a section knows. */
+/* Lookup of keys, and the texts of messages about them: what a key allows, which names a section has. */
 #include "schema.h"
 
 #include <math.h>
@@ -17,28 +17,28 @@ static const schema_entry sweep_rows[SWEEP_KEY_COUNT] = {
                          DOC("The key that is swept, or an element of its list: `model.gamma`, `model.floor[3]`.")},
     [SWEEP_VALUES] = {.path = "sweep.values", IS_NUMBERS, ANY, DOC("The values, in the order of the tasks.")},
     [SWEEP_FROM] = {.path = "sweep.from", IS_NUMBER, ANY, DOC("Instead of `values`: the first value.")},
-    [SWEEP_TO] = {.path = "sweep.to", IS_NUMBER, ANY, DOC("The last value, larger than `from`, met exactly.")},
+    [SWEEP_TO] = {.path = "sweep.to", IS_NUMBER, ANY, DOC("The last value, larger than `from`; it is hit exactly.")},
     [SWEEP_POINTS] = {.path = "sweep.points",
                       IS_INTEGER,
                       RANGE(1, STUDY_MAX_POINTS),
-                      DOC("Number of values, both ends included; 1 only where `from` equals `to`.")},
+                      DOC("Number of values, both ends included; 1 only if `from` equals `to`.")},
     [SWEEP_SCALE] = {.path = "sweep.scale",
                      IS_WORD,
                      DEFAULT("linear"),
                      ONE_OF("linear|log"),
-                     DOC("`linear`: equal steps; `log`: equal ratios, `from` above 0.")},
+                     DOC("`linear`: equal steps; `log`: equal ratios, which needs `from` above 0.")},
     [SWEEP_BACK] = {.path = "sweep.back",
                     IS_FLAG,
                     DEFAULT("false"),
-                    DOC("The values once more in the reverse order, after the others: with `iterate.follow`, there "
-                        "and back.")},
+                    DOC("Whether the values follow once more in reverse order; with `iterate.follow` the diagram "
+                        "then runs there and back.")},
 };
 
 study_key schema_sweep_row(sweep_key key) {
   return &sweep_rows[key];
 }
 
-/* --- looking up --- */
+/* --- lookup --- */
 
 study_key schema_find(const schema *t, const char *path) {
   for (size_t i = 0; i < t->key_count; i++)
@@ -58,7 +58,7 @@ bool schema_is_section(const schema *t, const char *name) {
   return false;
 }
 
-/* Whether a key before number `i` stands in the section of this name. */
+/* Whether a key before number `i` is in the section of this name. */
 static bool section_is_known(const schema *t, size_t i, const char *name, size_t length) {
   for (size_t earlier = 0; earlier < i; earlier++)
     if (is_in_section(t->keys[earlier]->path, name, length))

@@ -1,9 +1,9 @@
 /* The schema of study files: every key with its type, default, range or allowed words, and one line of documentation;
- * the kinds of study and the types of model, and which keys each takes. Refusals, `--set`, sweeps, `check` and the
+ * the kinds of study and the types of model, and which keys each accepts. Refusals, `--set`, sweeps, `check` and the
  * study-file reference are all driven by it.
  *
- * This room knows no kind and no type of model. The rows of their keys stand in their folders (`*.inc`), and
- * kind/kinds.c puts the schema together. */
+ * Nothing in this folder depends on a particular kind or type of model. The rows of their keys are in their own folders
+ * (`*.inc`), and kind/kinds.c assembles the schema. */
 #ifndef RICOCHET_APP_SCHEMA_H
 #define RICOCHET_APP_SCHEMA_H
 
@@ -24,13 +24,13 @@ typedef enum value_type {
 /** One key. How rows are written: keys.h. */
 typedef struct schema_entry {
   const char *path;  /* "model.gamma" */
-  const char *group; /* name of the keys that kinds and types of model take together, "start"; "": all take it */
+  const char *group; /* group of keys that kinds and types of model accept together, "start"; "": all accept it */
   value_type type;
   bool list;            /* a list of `type` is allowed */
   bool scalar;          /* a single value is allowed */
   bool null;            /* null is allowed, for a single value and inside a list: read as minus infinity ("none") */
-  bool required;        /* no default; a study of a kind and a model that take it needs it, unless the kind says that
-                           it does not */
+  bool required;        /* no default: a study whose kind and model accept the key must give it, unless `wants` of the
+                           kind returns false */
   const char *fallback; /* default as YAML text, "" when absent by default */
   double low, high;     /* range of a number, ends included unless open */
   bool low_open, high_open;
@@ -51,34 +51,34 @@ typedef const schema_entry *study_key;
 typedef struct study study;
 typedef struct document document;
 
-/** A default that a type of model has in place of that of the row. */
+/** A default of a type of model that replaces the default of the row. */
 typedef struct schema_default {
   const char *path, *fallback;
 } schema_default;
 
-/** A kind of study or a type of model, as far as reading a study goes. */
+/** A kind of study or a type of model: what the reader of studies needs of it. */
 typedef struct schema_choice {
   const char *name;    /* its word, "orbits" */
   const char *summary; /* half a sentence, for lists */
   const char *chapter; /* Markdown of its chapter in the reference, NULL for none */
-  const char *groups;  /* of the keys that it takes, "start|time" */
-  /** Features: of a type of model what it has, of a kind of which its model must have one; 0: any model. */
+  const char *groups;  /* of the keys that it accepts, "start|time" */
+  /** Features. Of a type of model: those it has. Of a kind: its model must have one of them; 0: any model. */
   unsigned features;
 
   /* Of a type of model. */
   const schema_default *defaults; /* ended by a path NULL; NULL: none */
   const char *last_keys; /* keys per particle of which a single value is that of the last particle; NULL: none */
-  /** Particles of a study that passed the checks of single keys; 0: lists have no such length. NULL: 0 */
+  /** Number of particles of a study whose single keys have been checked; 0, or NULL: lists are not per particle. */
   size_t (*particles)(const study *s);
 
   /* Of both; NULL where there is nothing to do. */
-  /** Fills in what the study leaves to its kind, after all keys and sweeps are read. */
+  /** Fills in values that the study omits, after all keys and sweeps are read. */
   int (*complete)(study *s, const document *d, message *why);
-  /** Refuses keys that do not fit together. */
+  /** Refuses combinations of keys that contradict each other. */
   int (*check)(const study *s, const document *d, message *why);
 
   /* Of a kind. */
-  /** Whether the study needs a required key that its kind takes; NULL: yes. */
+  /** Whether the study must give a required key that its kind accepts; NULL: yes. */
   bool (*wants)(const study *s, const document *d, study_key key);
 } schema_choice;
 
@@ -102,7 +102,7 @@ typedef enum sweep_key {
   SWEEP_KEY_COUNT
 } sweep_key;
 
-/** How a number meets the row of its key. */
+/** Whether a number satisfies the row of its key. */
 typedef enum schema_fit { FIT_OK, FIT_NOT_INTEGER, FIT_OUT_OF_RANGE } schema_fit;
 
 /** The row of a key of a sweep entry, its path "sweep.from". */
@@ -113,11 +113,12 @@ study_key schema_find(const schema *t, const char *path);
 
 /** The kind or type of a name among `choices`, NULL when there is none. @param name  may be NULL */
 const schema_choice *schema_choice_of(const schema_choice *const *choices, const char *name);
-/** Whether a kind takes a key. */
+/** Whether a kind accepts a key. */
 bool schema_kind_takes(const schema_choice *kind, study_key key);
-/** Whether a key is for a type of model. */
+/** Whether a type of model accepts a key. */
 bool schema_model_takes(const schema_choice *model, study_key key);
-/** Writes "a or b": the kinds that take a key; the types of model that have a key, or one of these features. */
+/** Writes "a or b": the kinds that accept a key; the types of model that accept a key, or have one of these features.
+ */
 void schema_kinds_of(const schema *t, study_key key, char *text, size_t size);
 void schema_models_of(const schema *t, study_key key, char *text, size_t size);
 void schema_models_with(const schema *t, unsigned features, char *text, size_t size);
@@ -126,7 +127,7 @@ unsigned schema_word_needs(study_key key, const char *word);
 /** The default for a type of model as YAML text; NULL and "" as in the row. @param model  may be NULL */
 const char *schema_fallback(study_key key, const schema_choice *model);
 
-/** Whether keys of the table stand under this name: `model`, `branch.trace`. */
+/** Whether the schema has keys in a section of this name: `model`, `branch.trace`. */
 bool schema_is_section(const schema *t, const char *name);
 /** Calls for every section once, in the order of the table, `sweep` last. @param name  not ended by a zero */
 void schema_sections(const schema *t, void (*call)(const char *name, size_t length, void *user), void *user);
@@ -139,7 +140,7 @@ void schema_nearest(const schema *t, const char *path, char *near, size_t size);
 /** The same among the keys that can be swept. */
 void schema_nearest_parameter(const schema *t, const char *path, char *near, size_t size);
 
-/** Place of a word in "a|b|c", from 0; -1 when it is none of them, as of NULL. @param length  of the word */
+/** Place of a word in "a|b|c", from 0; -1 when it is none of them or `words` is NULL. @param length  of the word */
 long schema_find_word(const char *word, size_t length, const char *words);
 /** Whether it is one of them. */
 bool schema_is_among(const char *word, size_t length, const char *words);

@@ -1,4 +1,4 @@
-/* Reading a study, its digest, and what it says of itself. */
+/* Reading a study, its digest, and its queries. */
 #include "study.h"
 
 #include <math.h>
@@ -29,14 +29,13 @@ int refuse_unknown_key(const study *s, const document *d, int key, const char *s
 
 static int read_key(study *s, const document *d, int key_node, int node, study_key key, message *why) {
   typed_value *value = &s->values[study_place_of(s, key)];
-  if (value->node) /* read ahead of the others */
+  if (value->node) /* already read by read_ahead */
     return 0;
   typed_clear(value);
   return typed_read(d, key_node, node, key, key->path, value, why);
 }
 
-/* Text of a key node if it is short, without a dot and printable as a C string, "" otherwise: such a name is in no
- * table. */
+/* Text of a key node; "" if it is long or contains a dot or a NUL, as no key of the schema does. */
 static const char *key_text(const document *d, int key) {
   const yaml_node_t *n = document_node(d, key);
   const char *text = (const char *)n->data.scalar.value;
@@ -99,7 +98,8 @@ static int set_defaults(study *s, message *why) {
   return 0;
 }
 
-/* The kind and the model's type come first: under one of a later version, the other keys are not unknown. */
+/* The kind and the model's type are read first: if one of them is of a later version, the study is refused for that
+ * and not for its other keys. */
 static int read_keys(study *s, const document *d, message *why) {
   int code = read_ahead(s, d, DOCUMENT_ROOT, "kind", s->schema->kind, why);
   if (!code)
@@ -125,7 +125,7 @@ static int check_root(const study *s, const document *d, message *why) {
                          document_is_null(d, DOCUMENT_ROOT) ? "empty" : held, names);
 }
 
-/* Missing keys are refused by study_check, later: what completes a study is asked only where both are said. */
+/* Called only if kind and model are given; study_check refuses a study without them later. */
 static int complete(study *s, const document *d, message *why) {
   if (!s->kind || !s->model)
     return 0;
@@ -142,7 +142,7 @@ static int read_tree(study *s, const document *d, message *why) {
   return code ? code : study_check(s, d, why);
 }
 
-/* The text written out again can be longer than the file was, and a result's study must be one that can be read. */
+/* The emitted text can be longer than the file, and the study of a result must be readable. */
 static int emit_text(study *s, const document *d, message *why) {
   const int code = document_emit(d, &s->text, why);
   if (code || strlen(s->text) <= STUDY_MAX_BYTES)
@@ -164,7 +164,7 @@ static int keep_text(study *s, const document *d, const char *text, size_t lengt
 
 /* --- its digest --- */
 
-/* Least byte first, so that the digest is the same on every machine. */
+/* Least significant byte first: the digest is the same on every machine. */
 static void add_integer(uint64_t *digest, uint64_t value) {
   unsigned char bytes[8];
   for (int i = 0; i < 8; i++)
@@ -172,7 +172,7 @@ static void add_integer(uint64_t *digest, uint64_t value) {
   *digest = digest_bytes(*digest, bytes, sizeof bytes);
 }
 
-/* Lengths come first: no two different texts or lists run together to the same bytes. */
+/* Lengths first: two different sequences of texts or lists never give the same bytes. */
 static void add_text(uint64_t *digest, const char *text) {
   add_integer(digest, strlen(text));
   *digest = digest_bytes(*digest, text, strlen(text));
@@ -209,7 +209,7 @@ static uint64_t compute_digest(const study *s) {
   return digest;
 }
 
-/* --- the whole --- */
+/* --- life --- */
 
 static int fill(study *s, document *d, const study_source *from, message *why) {
   int code = check_root(s, d, why);
@@ -279,7 +279,7 @@ void study_destroy(study **s) {
   for (size_t i = 0; (*s)->values && i < (*s)->schema->key_count; i++)
     typed_clear(&(*s)->values[i]);
   free((*s)->values);
-  for (size_t i = 0; i < STUDY_MAX_SWEEPS; i++) /* all: a refused study may hold values of an entry it does not count */
+  for (size_t i = 0; i < STUDY_MAX_SWEEPS; i++) /* all: a refused entry is not counted but may own values */
     free((*s)->sweeps[i].values);
   free((*s)->text);
   free((*s)->name);
@@ -287,7 +287,7 @@ void study_destroy(study **s) {
   *s = NULL;
 }
 
-/* --- what it says of itself --- */
+/* --- queries --- */
 
 const char *study_kind(const study *s) {
   return s->kind->name;

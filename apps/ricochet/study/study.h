@@ -2,7 +2,7 @@
  *
  * Reading is strict: an unknown key (the nearest known one is named), a duplicate key, a wrong type, trailing
  * characters, a value out of range, anchors, aliases, tags, a second document, nesting deeper than 32, files over 8 MiB
- * are refused with `FILE:LINE:`, key, value and what is allowed. Nothing of MPI or HDF5 is known here. */
+ * are refused with `FILE:LINE:`, key, value and what is allowed. This folder uses neither MPI nor HDF5. */
 #ifndef RICOCHET_APP_STUDY_H
 #define RICOCHET_APP_STUDY_H
 
@@ -41,7 +41,7 @@ typedef struct study_sweep {
  *  @returns 0, EXIT_FILES when it cannot be read, EXIT_USAGE when it is larger than STUDY_MAX_BYTES. */
 int study_read_file(const char *path, char **text, size_t *length, message *why);
 
-/** What the program puts into a study before it is checked, in place of what the study says there. */
+/** A value that the program assigns before the study is checked; it replaces that of the study. */
 typedef struct study_assignment {
   const char *path;      /* "orbit.period", borrowed */
   const double *numbers; /* [count] */
@@ -52,14 +52,14 @@ typedef struct study_assignment {
 /** A study to be read. */
 typedef struct study_source {
   const schema *schema; /* borrowed, must outlive the study */
-  const char *name;     /* how messages call the text, usually the file's path */
+  const char *name;     /* name of the text in messages, usually the file's path */
   const char *text;     /* [length] */
   size_t length;
   const char *const *sets; /* [set_count] `--set` assignments "path=value", the value in YAML; applied to the tree
                               before validation, so any key can be set, also `sweep[0].points`. Messages about them
                               begin with `--set path=value:` */
   size_t set_count;
-  const char *assigned_by;             /* what messages about the following begin with, "restart" */
+  const char *assigned_by;             /* how messages about the following begin, "restart" */
   const study_assignment *assignments; /* [assignment_count] applied after `sets` */
   size_t assignment_count;
 } study_source;
@@ -77,21 +77,21 @@ const char *study_kind(const study *s);
 const schema_choice *study_kind_choice(const study *s);
 const schema_choice *study_model_choice(const study *s);
 
-/** Place of the number of a particle in the value of a key: the particle's own in a list, that of a single number; -1
- *  where the single number is of another particle. Of keys with a value. */
+/** Index of a particle's number in the value of a key: the particle itself in a list, 0 for a single number; -1 if the
+ *  single number applies to another particle. The key must have a value. */
 long study_item(const study *s, study_key key, size_t particle);
 
-/** How messages call this study (the `name` it was parsed under). */
+/** Name of the study in messages (study_source). */
 const char *study_name(const study *s);
 
 /** Free text of the user; "" when there is none. */
 const char *study_title(const study *s);
 
-/** Line of a key in the file, or of the sweep that supplies a key left out; 0 when neither stands there (default, or
- *  `--set`). */
+/** Line of a key in the file, or of the sweep that supplies a key left out; 0 when neither is in the file (default,
+ *  or `--set`). */
 size_t study_line(const study *s, study_key key);
 
-/** Whether a key is given, in the file, by `--set` or by a sweep, and has not its default. */
+/** Whether a key is given in the file, by `--set` or by a sweep. */
 bool study_gives(const study *s, study_key key);
 
 /** "FILE:LINE: model.gamma" of a key, or "--set model.gamma=3: model.gamma", or "FILE: model.gamma" for a default. */
@@ -109,8 +109,7 @@ const study_sweep *study_sweep_at(const study *s, size_t index);
 /** Number of grid points, the product over the sweeps; 1 without a sweep. Less than 2^40. */
 uint64_t study_tasks(const study *s);
 
-/** The number that the word of a key names, such as `branch.parameter`, and that the kind moves while a task runs; NULL
- *  where there is none. */
+/** The number that varies while a task runs and that a key such as `branch.parameter` names; NULL if there is none. */
 const study_parameter *study_moved(const study *s, study_key by);
 
 /** Value of sweep `index` at a task below study_tasks; the last sweep varies fastest. */
@@ -130,7 +129,7 @@ void study_values_at(study_values *v, uint64_t task);
 
 /** Gives the parameter of sweep `index` another value, until study_values_at. */
 void study_values_sweep(study_values *v, size_t index, double value);
-/** Moves the number that a key names (study_moved), until study_values_at; nothing where there is none. */
+/** Sets the varying number that a key names (study_moved), until study_values_at; no effect if there is none. */
 void study_values_move(study_values *v, study_key by, double value);
 
 /** Whether the key was given (in the file or by --set) or has a default. */
@@ -140,9 +139,9 @@ bool value_is_list(const study_values *v, study_key key);
 /** Elements of a list; 1 for a scalar, 0 when absent. */
 size_t value_count(const study_values *v, study_key key);
 /** Element `i` of a number, integer or flag value, scalar or list; null reads as -INFINITY; an element of a list of
- *  words as its place among those of the row. */
+ *  words reads as its index among the words of the row. */
 double value_number(const study_values *v, study_key key, size_t i);
-/** The number of a particle: its own in a list, or the one value; minus infinity where that is of another particle. */
+/** The number of a particle: its own in a list, or the one value; minus infinity if that applies to another one. */
 double value_of_particle(const study_values *v, study_key key, size_t particle);
 bool value_flag(const study_values *v, study_key key);
 /** Word or text; "" when absent. */

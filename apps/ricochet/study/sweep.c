@@ -1,4 +1,4 @@
-/* Numbers of the study by their names, and the sweeps over them. */
+/* Lookup of numbers by their names, and the sweeps over them. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -6,9 +6,9 @@
 #include "number.h"
 #include "check.h"
 
-/* --- numbers by their names --- */
+/* --- parameters --- */
 
-/* A name being looked up. */
+/* A lookup in progress. */
 typedef struct lookup {
   const study *s;
   const document *d;
@@ -16,7 +16,7 @@ typedef struct lookup {
   message *why;
 } lookup;
 
-/* Splits "model.floor[3]" into key path and item; item -1 without an index, -2 for a malformed or huge one. */
+/* Splits "model.floor[3]" into path and index. @returns -1 without an index, -2 for a malformed or huge one */
 static long split_name(const char *text, char *path, size_t size) {
   const size_t length = strcspn(text, "[");
   snprintf(path, size, "%.*s", (int)(length < size ? length : size - 1), text);
@@ -110,7 +110,7 @@ int parameter_supply(study *s, const document *d, const parameter_use *use, int 
 
 static const uint64_t too_many_tasks = (uint64_t)1 << 40;
 
-/* An entry being read. */
+/* The entry of `sweep` that is read. */
 typedef struct reading {
   study *s;
   const document *d;
@@ -231,7 +231,7 @@ typedef struct range {
   bool log;
 } range;
 
-/* Both ends are met exactly, whatever rounding does in between. */
+/* Both ends are exact, without rounding. */
 static double range_value(const range *g, size_t i) {
   if (i == 0 || g->points == 1)
     return g->from;
@@ -270,7 +270,7 @@ static int read_range_keys(const reading *r, range *g) {
     schema_allowed(schema_sweep_row(key), allowed, sizeof allowed);
     if (!given(r, key))
       return document_refuse(r->d, r->node, r->why,
-                             "missing key %s.%s (%s): a sweep takes either values, or from, to and points", r->label,
+                             "missing key %s.%s (%s): expected either values, or from, to and points", r->label,
                              short_name(key), allowed);
   }
   double points = 0;
@@ -305,8 +305,8 @@ static int read_range(const reading *r) {
   return 0;
 }
 
-/* The values once more in the reverse order, where that is wanted. */
-static int go_back(const reading *r) {
+/* Appends the values in reverse order if `back` is true. */
+static int append_reversed(const reading *r) {
   study_sweep *view = &r->e->view;
   double wanted = 0;
   const int code = read_number(r, SWEEP_BACK, &wanted);
@@ -331,7 +331,7 @@ static int read_entry(reading *r) {
   if (code)
     return code;
   r->e->view.values = r->e->values;
-  code = given(r, SWEEP_BACK) ? go_back(r) : 0;
+  code = given(r, SWEEP_BACK) ? append_reversed(r) : 0;
   if (code)
     return code;
   char label[128];
@@ -392,7 +392,7 @@ int sweep_value_node(const document *d, const sweep_entry *e, size_t i) {
   if (e->nodes[SWEEP_VALUES]) {
     const yaml_node_t *list = document_node(d, e->nodes[SWEEP_VALUES]);
     const size_t count = (size_t)(list->data.sequence.items.top - list->data.sequence.items.start);
-    return list->data.sequence.items.start[i < count ? i : 2 * count - 1 - i]; /* beyond: on the way back */
+    return list->data.sequence.items.start[i < count ? i : 2 * count - 1 - i]; /* from `count` on: in reverse */
   }
   return i == 0 ? e->nodes[SWEEP_FROM] : i == e->view.points - 1 ? e->nodes[SWEEP_TO] : e->nodes[SWEEP_POINTS];
 }

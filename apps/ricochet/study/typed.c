@@ -79,7 +79,7 @@ static bool is_one_of(const reading *r, const char *words) {
   return schema_is_among((const char *)n->data.scalar.value, n->data.scalar.length, words);
 }
 
-/* A word of a list as its place among those that are allowed. */
+/* A word of a list as its index among the allowed words. */
 static int read_place(const reading *r, double *place) {
   const yaml_node_t *n = document_node(r->d, r->node);
   const long found = n->type == YAML_SCALAR_NODE

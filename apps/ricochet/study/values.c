@@ -4,8 +4,7 @@
 
 #include "check.h"
 
-/* Numbers point into the study, but for keys with a value that varies: those have a copy here, which each task
- * rewrites. */
+/* Numbers are those of the study, except of keys whose value varies: these have a copy, which each task rewrites. */
 struct study_values {
   const study *s;
   const double **numbers; /* [keys] */
@@ -19,7 +18,7 @@ static size_t place_of(long item) {
 static bool copy_varied(study_values *v, study_key key) {
   const size_t at = study_place_of(v->s, key);
   const typed_value *value = &v->s->values[at];
-  if (v->copies[at] || !value->present) /* a parameter that a restart will bring has no value yet */
+  if (v->copies[at] || !value->present) /* before a restart is resolved, its parameter has no value */
     return true;
   v->copies[at] = malloc(value->count * sizeof *value->numbers);
   if (!v->copies[at])
