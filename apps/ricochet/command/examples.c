@@ -1,10 +1,11 @@
 /* ricochet examples: lists or prints the studies that the program ships; never starts MPI. */
-#include "examples.h"
-
 #include <stdio.h>
 #include <string.h>
 
+#include "base/embedded.h"
 #include "command.h"
+
+extern const embedded_text shipped_studies[];
 
 static const char help[] = "usage: ricochet examples [NAME]\n"
                            "\n"
@@ -23,7 +24,7 @@ static void print_title(const char *text) {
 }
 
 static void list(void) {
-  for (const example *e = examples; e->name; e++) {
+  for (const embedded_text *e = shipped_studies; e->name; e++) {
     printf("%-24s ", e->name);
     print_title(e->text);
     putchar('\n');
@@ -40,14 +41,12 @@ int command_examples(int argc, char **argv) {
   else if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0)
     fputs(help, stdout);
   else {
-    const example *e = examples;
-    while (e->name && strcmp(e->name, argv[1]) != 0)
-      e++;
-    if (!e->name)
+    const char *text = embedded_find(shipped_studies, argv[1]);
+    if (!text)
       return complain(
           refuse(&why, EXIT_USAGE, "ricochet examples: no study named %s (ricochet examples lists them)", argv[1]),
           &why);
-    fputs(e->text, stdout);
+    fputs(text, stdout);
   }
   return finish_output(0);
 }

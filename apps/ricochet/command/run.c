@@ -115,7 +115,7 @@ static int read_done(void *user, uint64_t first, uint64_t count, unsigned char *
 /* Rows for the writer; counts outcomes on the way. */
 static int read_rows(void *user, uint64_t first, uint64_t count, unsigned char *rows, message *why) {
   run *r = user;
-  const column *outcome = table_column(&r->plan.rows, r->plan.outcome);
+  const column *outcome = table_column(&r->plan.rows, "outcome");
   int code = read_done(r, first, count, rows, why);
   for (uint64_t i = 0; !code && i < count; i++)
     r->outcomes[rows[i * r->plan.rows.row_bytes + outcome->offset] % 64]++;
@@ -260,7 +260,7 @@ static int assemble(run *r, message *why) {
 
 /* The last line: "15 tasks: 14 admissible, 1 grazing -> example.h5 (0.02 s computing, 0.5 s in all)". */
 static void print_summary(const run *r) {
-  const column *outcome = table_column(&r->plan.rows, r->plan.outcome);
+  const column *outcome = table_column(&r->plan.rows, "outcome");
   const char *separator = ":";
   printf("%llu task%s", (unsigned long long)study_tasks(r->study), study_tasks(r->study) == 1 ? "" : "s");
   for (size_t i = 0; i < outcome->name_count; i++)

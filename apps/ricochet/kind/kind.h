@@ -23,13 +23,12 @@ typedef struct tail {
 
 /** What a study will take and give. */
 typedef struct kind_plan {
-  table rows; /* a row per task */
+  table rows; /* a row per task; its column `outcome`, of words, is counted at the end */
   tail tails[KIND_MOST_TAILS];
   size_t tail_count;
-  uint64_t batch;      /* most tasks that are evaluated at once; 0: one */
-  bool whole;          /* so many always: tasks of a batch follow from one another. They have no tails then */
-  double memory;       /* bytes that one rank computes with */
-  const char *outcome; /* name of the column whose words are counted at the end */
+  uint64_t batch; /* most tasks that are evaluated at once; 0: one */
+  bool whole;     /* so many always: tasks of a batch follow from one another. They have no tails then */
+  double memory;  /* bytes that one rank computes with */
 } kind_plan;
 
 /** Evaluates tasks; one per rank. */

@@ -35,7 +35,7 @@ static const study_key keys[] = {
 #undef KEY
 };
 
-extern const char chapter_introduction[];
+extern const embedded_text chapters[]; /* generated from *.md here and beside the models */
 
 const schema studies = {.keys = keys,
                         .key_count = sizeof keys / sizeof *keys,
@@ -43,7 +43,7 @@ const schema studies = {.keys = keys,
                         .models = models,
                         .kind = KEY_KIND,
                         .model = KEY_MODEL_TYPE,
-                        .introduction = chapter_introduction};
+                        .chapters = chapters};
 
 int kind_read_study(const char *path, const char *const *sets, size_t set_count, study **out, message *why) {
   char *text = NULL;

@@ -57,11 +57,8 @@ static void read_springs(lattice_model *m, const study_values *v) {
   m->lattice.link = coupling(v);
 }
 
-extern const char chapter_chain[];
-
 const model_type model_chain = {.choice = {.name = "chain",
                                            .summary = "particles on springs of their own, coupled to their neighbours",
-                                           .chapter = chapter_chain,
                                            .groups = "lattice|chain",
                                            .features = MODEL_SYSTEM | MODEL_CHAIN,
                                            .particles = lattice_particles},

@@ -11,12 +11,9 @@ static void read_springs(lattice_model *m, const study_values *v) {
 
 static const schema_default defaults[] = {{"model.floor", "null"}, {"orbit.method", "shooting"}, {0}};
 
-extern const char chapter_duffing_chain[];
-
 const model_type model_duffing_chain = {
     .choice = {.name = "duffing_chain",
                .summary = "particles in series, joined by springs, the first one to the ground",
-               .chapter = chapter_duffing_chain,
                .groups = "lattice",
                .features = MODEL_SYSTEM,
                .defaults = defaults,

@@ -79,11 +79,8 @@ static int check(const study *s, const document *d, message *why) {
                       study_has(s, KEY_MODEL_LAMBDA) ? "model.omega" : "model.lambda");
 }
 
-extern const char chapter_grazing_map[];
-
 const model_type model_grazing_map = {.choice = {.name = "grazing_map",
                                                  .summary = "the return map beside a grazing motion",
-                                                 .chapter = chapter_grazing_map,
                                                  .groups = "grazing_map",
                                                  .features = MODEL_MAP,
                                                  .check = check}};

@@ -123,7 +123,7 @@ static void print_shared_keys(FILE *out, const chapters *c, const schema_choice 
 
 static void print_chapters(FILE *out, const chapters *c) {
   for (const schema_choice *const *choice = c->choices; *choice; choice++) {
-    fprintf(out, "\n### `%s: %s`\n\n%s", c->key, (*choice)->name, (*choice)->chapter);
+    fprintf(out, "\n### `%s: %s`\n\n%s", c->key, (*choice)->name, embedded_find(c->schema->chapters, (*choice)->name));
     print_own_keys(out, c, *choice);
     for (const schema_choice *const *earlier = c->choices; earlier != choice; earlier++)
       print_shared_keys(out, c, *choice, *earlier);
@@ -171,7 +171,7 @@ static void print_later_words(FILE *out, const schema *t) {
 void schema_reference(const schema *t, FILE *out) {
   const chapters kinds = {t, t->kinds, schema_kind_takes, "kind"},
                  models = {t, t->models, schema_model_takes, "model.type"};
-  fprintf(out, "%s", t->introduction);
+  fprintf(out, "%s", embedded_find(t->chapters, "introduction"));
   print_common(out, t);
   fprintf(out, "\n## Kinds of study\n");
   print_chapters(out, &kinds);

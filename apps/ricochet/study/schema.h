@@ -11,6 +11,7 @@
 #include <stddef.h>
 #include <stdio.h>
 
+#include "../base/embedded.h"
 #include "../base/message.h"
 
 typedef enum value_type {
@@ -60,7 +61,6 @@ typedef struct schema_default {
 typedef struct schema_choice {
   const char *name;    /* its word, "orbits" */
   const char *summary; /* half a sentence, for lists */
-  const char *chapter; /* Markdown of its chapter in the reference, NULL for none */
   const char *groups;  /* of the keys that it accepts, "start|time" */
   /** Features. Of a type of model: those it has. Of a kind: its model must have one of them; 0: any model. */
   unsigned features;
@@ -87,7 +87,8 @@ typedef struct schema {
   size_t key_count;
   const schema_choice *const *kinds, *const *models; /* each ended by NULL */
   study_key kind, model;                             /* the keys whose words are their names */
-  const char *introduction;                          /* Markdown before the chapters of the reference */
+  const embedded_text *chapters; /* Markdown of the reference, by the names of kinds and types of model; and the
+                                    `introduction` before them */
 } schema;
 
 /** The keys of one entry of `sweep`, described by rows of the same kind. */

@@ -165,10 +165,8 @@ static const column curve_columns[] = {
 
 enum { ROWS, TAILS };
 
-extern const char chapter_branch_results[];
-
 const column_list branch_lists[] = {
-    [ROWS] = {"branch", "task", COLUMNS(row_columns), .doc = chapter_branch_results},
+    [ROWS] = {"branch", "task", COLUMNS(row_columns)},
     [TAILS + BRANCH_POINTS] = {"branch", "point_row", "point_offset",
                                "points of a task: from its offset up to the next", COLUMNS(point_columns),
                                .doc = "Ragged: the points, in the order of the continuation run.\n"},

@@ -63,7 +63,7 @@ static int branch_plan(const study *s, kind_plan *plan, message *why) {
   study_values *v = study_values_create(s);
   if (!v)
     return refuse(why, EXIT_RUN, "%s: no memory for the values of a task", study_name(s));
-  *plan = (kind_plan){.outcome = "outcome"};
+  *plan = (kind_plan){0};
   int code = refuse_multipliers(s, v, why);
   plan->memory = family_task_bytes(v);
   if (!code)
@@ -380,11 +380,8 @@ static bool branch_wants(const study *s, const document *d, study_key key) {
 }
 
 extern const kind kind_branch;
-extern const char chapter_branch[];
-
 const kind kind_branch = {.choice = {.name = "branch",
                                      .summary = "a family of periodic motions along a parameter",
-                                     .chapter = chapter_branch,
                                      .groups = "pattern|start|family|trace|branch",
                                      .features = MODEL_SYSTEM,
                                      .complete = family_complete,

@@ -1,4 +1,4 @@
-#include "beyond.h"
+#include "diagram.h"
 
 #include <math.h>
 #include <stdlib.h>

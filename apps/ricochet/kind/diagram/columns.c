@@ -75,21 +75,18 @@ static const column beyond_columns[] = {
 
 #define LIST(kind) .group = (kind), .row_axis = "task"
 
-extern const char chapter_diagram_results[], chapter_basin_results[];
-
 /* The last one is that of diagrams beyond grazing. */
 enum { DIAGRAM_BEYOND = 3 };
 
 const column_list diagram_lists[] = {
-    {LIST("diagram"), COLUMNS(row_columns), .doc = chapter_diagram_results},
+    {LIST("diagram"), COLUMNS(row_columns)},
     {LIST("diagram"), COLUMNS(diagram_columns)},
     {LIST("diagram"), COLUMNS(end_columns)},
     [DIAGRAM_BEYOND] = {LIST("diagram"), COLUMNS(beyond_columns),
                         .doc = "With `grazing.beyond`, for motions; NaN (`map_period` 0) if there is no map:\n"},
     {0}};
 
-const column_list basin_lists[] = {
-    {LIST("basin"), COLUMNS(row_columns), .doc = chapter_basin_results}, {LIST("basin"), COLUMNS(end_columns)}, {0}};
+const column_list basin_lists[] = {{LIST("basin"), COLUMNS(row_columns)}, {LIST("basin"), COLUMNS(end_columns)}, {0}};
 
 static size_t exponents_of(const study_values *v) {
   return value_flag(v, KEY_ITERATE_LYAPUNOV) ? (size_t)value_number(v, KEY_ITERATE_EXPONENTS, 0) : 0;

@@ -1,4 +1,4 @@
-#include "iterated.h"
+#include "diagram.h"
 #include "kind/keys.h"
 
 #include <math.h>

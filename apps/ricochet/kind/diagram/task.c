@@ -35,7 +35,7 @@ static int diagram_plan(const study *s, kind_plan *plan, message *why) {
   study_values *v = study_values_create(s);
   if (!v)
     return refuse(why, EXIT_RUN, "%s: no memory for the values of a task", study_name(s));
-  *plan = (kind_plan){.outcome = "outcome"};
+  *plan = (kind_plan){0};
   plan->whole = value_flag(v, KEY_ITERATE_FOLLOW);
   diagram_lay_out(s, v, &plan->rows);
   const double row_bytes = table_row_bytes(&plan->rows);
@@ -199,12 +199,9 @@ static int diagram_evaluate(worker *w, const kind_plan *plan, task_range tasks, 
 }
 
 extern const kind kind_diagram, kind_basin;
-extern const char chapter_diagram[], chapter_basin[];
-
 const kind kind_diagram = {
     .choice = {.name = "diagram",
                .summary = "the attractor of a map, or of a motion on a section, at every grid point",
-               .chapter = chapter_diagram,
                .groups = "iterate|start|diagram|pattern|family",
                .complete = diagram_complete,
                .wants = diagram_wants,
@@ -219,7 +216,6 @@ const kind kind_diagram = {
 
 const kind kind_basin = {.choice = {.name = "basin",
                                     .summary = "to which of the attractors every start of a grid comes",
-                                    .chapter = chapter_basin,
                                     .groups = "iterate|start",
                                     .complete = diagram_complete,
                                     .check = basin_check},

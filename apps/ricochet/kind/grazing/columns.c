@@ -155,11 +155,9 @@ static const column curve_columns[] = {
 
 enum { ROWS, WINDOWS, CURVES };
 
-extern const char chapter_grazing_results[];
-
 /* Curves go through the grazing point of the task, which is no column. */
 const column_list grazing_lists[] = {
-    [ROWS] = {"grazing", "task", COLUMNS(row_columns), .doc = chapter_grazing_results},
+    [ROWS] = {"grazing", "task", COLUMNS(row_columns)},
     [WINDOWS] = {"grazing", "task", COLUMNS(window_columns), .doc = "Unless `windows: 0`:\n"},
     [CURVES] =
         {"grazing", "curve_row", "curve_offset", CURVE_POINTS_MEANING, .columns = curve_point_columns + 1,

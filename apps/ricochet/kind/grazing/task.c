@@ -42,7 +42,7 @@ static int grazing_plan(const study *s, kind_plan *plan, message *why) {
   study_values *v = study_values_create(s);
   if (!v)
     return refuse(why, EXIT_RUN, "%s: no memory for the values of a task", study_name(s));
-  *plan = (kind_plan){.outcome = "outcome"};
+  *plan = (kind_plan){0};
   grazing_lay_out(v, family_followed(s)->name, family_traced(s) ? family_traced(s)->name : NULL, plan);
   plan->memory = bytes_of(v, &plan->rows);
   const int code = machine_refuse_size(s, "a grazing motion", plan->memory, why);
@@ -126,11 +126,8 @@ static int grazing_complete(study *s, const document *d, message *why) {
 }
 
 extern const kind kind_grazing;
-extern const char chapter_grazing[];
-
 const kind kind_grazing = {.choice = {.name = "grazing",
                                       .summary = "where a family first grazes an obstacle, and what follows there",
-                                      .chapter = chapter_grazing,
                                       .groups = "pattern|start|family|trace|grazing",
                                       .features = MODEL_SYSTEM,
                                       .complete = grazing_complete,

@@ -71,7 +71,7 @@ static int shooting_plan(const study *s, kind_plan *plan, message *why) {
   study_values *v = study_values_create(s);
   if (!v)
     return refuse(why, EXIT_RUN, "%s: no memory for the values of a task", study_name(s));
-  *plan = (kind_plan){.outcome = "outcome", .memory = bytes(v)};
+  *plan = (kind_plan){.memory = bytes(v)};
   orbits_lay_out(v, &plan->rows);
   int code = refuse_impacts(s, v, why);
   if (!code)

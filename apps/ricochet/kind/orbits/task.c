@@ -67,7 +67,7 @@ static int orbits_plan(const study *s, kind_plan *plan, message *why) {
   study_values *v = study_values_create(s);
   if (!v)
     return refuse(why, EXIT_RUN, "%s: no memory for the values of a task", study_name(s));
-  *plan = (kind_plan){.outcome = "outcome"};
+  *plan = (kind_plan){0};
   orbits_lay_out(v, &plan->rows);
   int code = refuse_dense(s, v, why);
   if (!code)
@@ -201,11 +201,8 @@ static const kind *by_method(const study *s) {
   return has_closed_form(s) ? &kind_orbits : &kind_orbits_shooting;
 }
 
-extern const char chapter_orbits[];
-
 const kind kind_orbits = {.choice = {.name = "orbits",
                                      .summary = "the periodic orbit of one impact pattern at every grid point",
-                                     .chapter = chapter_orbits,
                                      .groups = "pattern|orbits",
                                      .features = MODEL_SYSTEM,
                                      .check = orbits_check},

@@ -406,7 +406,7 @@ static int trajectory_plan(const study *s, kind_plan *plan, message *why) {
   if (!v)
     return refuse(why, EXIT_RUN, "%s: no memory for the values of a task", study_name(s));
   const trajectory_shape shape = trajectory_shape_of(v);
-  *plan = (kind_plan){.outcome = "outcome"};
+  *plan = (kind_plan){0};
   trajectory_lay_out(&shape, plan);
   int code = plan_memory(s, v, plan, why);
   study_values_destroy(&v);
@@ -444,11 +444,8 @@ static int trajectory_check(const study *s, const document *d, message *why) {
 }
 
 extern const kind kind_trajectory;
-extern const char chapter_trajectory[];
-
 const kind kind_trajectory = {.choice = {.name = "trajectory",
                                          .summary = "the motion from a state, or from an orbit, at every grid point",
-                                         .chapter = chapter_trajectory,
                                          .groups = "pattern|start|time",
                                          .features = MODEL_SYSTEM,
                                          .wants = trajectory_wants,
