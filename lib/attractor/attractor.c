@@ -126,7 +126,7 @@ static double difference_after(const row *r, size_t i, size_t lag, size_t from, 
 /* Whether a number converges to a cycle of half the period: near a flip it converges slowly and alternates between
  * two sides, and it returns to the same side, within the tolerance, long before it has converged. The limit of its
  * difference after half the period is extrapolated, since that decays by the same factor as the difference after the
- * whole period. At the flip itself it decays as the square root of time, and the test would remove a third of it. */
+ * whole period. At the flip itself it decays as the inverse square root of time, and loses a third here. */
 static bool converges_to_half(const row *r, size_t i, size_t period) {
   const size_t shift = (r->count - period) / period * (period / 2), count = r->count - period - shift;
   const double whole = difference_after(r, i, period, 0, count),

@@ -247,14 +247,14 @@ static ric_status iterate(ric_map_runner *r, double *state, size_t count, ric_er
   return ric_poll_stops(r->options.poll) ? ric_fail(error, RIC_ESTOPPED, "stopped by the poll callback") : RIC_OK;
 }
 
-/* Iterates; afterwards the last state is the first one of the trace. @param keeps  stores the iterates */
-static ric_status advance_maps(ric_map_runner *r, size_t until, bool keeps, ric_error *error) {
+/* Iterates; afterwards the last state is the first one of the trace. @param stores  the iterates become results */
+static ric_status advance_maps(ric_map_runner *r, size_t until, bool stores, ric_error *error) {
   size_t state = r->block.size * r->block.width;
   while (r->done < until && r->left > 0) {
     size_t count = least(least(r->piece, until - r->done), CHECK_INTERVAL - r->done % CHECK_INTERVAL);
     double *last = r->trace + count * state;
     RIC_TRY(iterate(r, r->trace, count, error));
-    if (keeps)
+    if (stores)
       store(r, r->trace + state, count);
     r->done += count;
     if (r->done % CHECK_INTERVAL == 0 || r->done == until)

@@ -20,8 +20,8 @@ typedef struct motion_record {
 /* Data of the observer of a run. */
 typedef struct impact_recorder {
   motion_record *record;
-  size_t seen;
-  bool keeps;         /* records the impacts, else only counts them */
+  size_t impacts;
+  bool records;       /* records the impacts, else only counts them */
   bool ends_at_first; /* ends the run at the first impact */
   const char *what;   /* an event that rules out shooting, and its time; NULL: none */
   double when;
@@ -36,11 +36,11 @@ static int on_event(const ric_event *event, void *user) {
   }
   if (!ric_event_jumps(event))
     return 0;
-  if (l->keeps) {
-    l->record->sequence[l->seen] = event->obstacle;
-    l->record->times[l->seen] = event->time;
+  if (l->records) {
+    l->record->sequence[l->impacts] = event->obstacle;
+    l->record->times[l->impacts] = event->time;
   }
-  l->seen++;
+  l->impacts++;
   return l->ends_at_first;
 }
 
@@ -82,10 +82,10 @@ static void fold_times(motion_record *record, double period) {
 /* Counts the impacts in one run and records them in another: both runs are identical. */
 static ric_status record_motion(motion_record *record, ric_trajectory *trajectory, const ric_system *system,
                                 double period, double t, const double *q, const double *u, ric_error *error) {
-  impact_recorder counter = {.record = record}, writer = {.record = record, .keeps = true, .ends_at_first = true};
+  impact_recorder counter = {.record = record}, writer = {.record = record, .records = true, .ends_at_first = true};
   RIC_TRY(ric_trajectory_start(trajectory, t, q, u, error));
   RIC_TRY(run_to(trajectory, t + period, &counter, error));
-  record->count = counter.seen;
+  record->count = counter.impacts;
   RIC_TRY(allocate_record(record, system, error));
   RIC_TRY(ric_trajectory_start(trajectory, t, q, u, error));
   if (record->count == 0) {

@@ -28,7 +28,7 @@ typedef struct exploration {
   ric_explore_visitor visitor;
   segment *segments; /* [options.segments] */
   meeting *meetings; /* [options.segments] */
-  size_t count, current, met, specials;
+  size_t count, current, meeting_count, specials;
   ric_status status; /* RIC_OK, or the failure of a callback: RIC_ENOMEM, RIC_ESTOPPED */
   bool over;         /* the visitor has asked to stop */
   ric_error *error;
@@ -57,11 +57,11 @@ static bool is_near(double a, double b, double tolerance) {
 static bool is_known_meeting(exploration *e, const ric_family_point *point) {
   const meeting m = {point->parameter, point->orbit->period, point->orbit->energy};
   const double tolerance = e->options.same_point_tol;
-  for (size_t i = 0; i < e->met; i++)
+  for (size_t i = 0; i < e->meeting_count; i++)
     if (is_near(m.parameter, e->meetings[i].parameter, tolerance) &&
         is_near(m.period, e->meetings[i].period, tolerance) && is_near(m.energy, e->meetings[i].energy, tolerance))
       return true;
-  e->meetings[e->met++] = m;
+  e->meetings[e->meeting_count++] = m;
   return false;
 }
 

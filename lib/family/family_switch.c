@@ -225,7 +225,7 @@ static ric_status state_at(crossing *c, double time, double *x) {
   while (time < begin - at_turning * c->period)
     time += c->period;
   for (size_t k = 0; k < plan->count; k++) {
-    piece_run run = shooting_begin(s, k, z, c->period, WISH_STATE);
+    piece_run run = shooting_begin(s, k, z, c->period, OUTPUT_STATE);
     if (time >= run.end - at_turning * c->period && k + 1 < plan->count)
       continue;
     RIC_TRY(arc_runner_move(&s->runner, run.begin, fmax(time, run.begin), s->x, 0, NULL, NULL, c->error));
@@ -241,7 +241,7 @@ static ric_status find_start(crossing *c) {
   size_t size = c->from->shooting->arcs.size;
   c->begin = !is_even(c) && m->count > 0 ? c->times[0] : 0;
   if (is_even(c)) { /* the motion is the same: only its unknowns have other meanings */
-    (void)shooting_begin(c->from->shooting, 0, c->point->z, c->period, WISH_STATE);
+    (void)shooting_begin(c->from->shooting, 0, c->point->z, c->period, OUTPUT_STATE);
     memcpy(c->x, c->from->shooting->x, size * sizeof *c->x);
     return RIC_OK;
   }

@@ -126,7 +126,7 @@ static double time_between_impacts(const ric_orbit *o) {
 static ric_status verify(ric_shooting *s, const double *z, double given, const ric_orbit *orbit, double *states,
                          const ric_verify_options *options, ric_verification *verification, ric_error *error) {
   size_t n = s->arcs.coordinates;
-  double period = orbit->period, first = shooting_begin(s, 0, z, period, WISH_STATE).begin;
+  double period = orbit->period, first = shooting_begin(s, 0, z, period, OUTPUT_STATE).begin;
   double late = fmod(time_between_impacts(orbit) - first, period);
   late += late < 0 ? period : 0;
   if (shooting_is_even(s)) /* the second half is the first one reversed: it has no impact there either */
@@ -389,7 +389,7 @@ ric_status ric_shooting_guess(ric_shooting *s, const double *q, const double *u,
   guess_numbers(s, q, u, times, period, z);
   RIC_TRY(set_phase(s, z, error));
   for (size_t k = 0; k + 1 < s->arcs.count; k++) {
-    piece_run run = shooting_begin(s, k, z, period, WISH_STATE);
+    piece_run run = shooting_begin(s, k, z, period, OUTPUT_STATE);
     RIC_TRY(shooting_move(s, &run, NULL, error));
     if (run.piece->how == PIECE_IMPACT)
       RIC_TRY(shooting_hit(s, &run, error));

@@ -46,14 +46,14 @@ static inline bool shooting_is_even(const ric_shooting *s) {
 
 /** Results for the end of a piece: its state; also derivatives by the unknowns in the first state; also by the whole
  *  first state. */
-typedef enum piece_wish { WISH_STATE, WISH_DERIVATIVES, WISH_WHOLE } piece_wish;
+typedef enum piece_output { OUTPUT_STATE, OUTPUT_DERIVATIVES, OUTPUT_WHOLE } piece_output;
 
 /** A piece of a motion that is integrated. */
 typedef struct piece_run {
   const arc_piece *piece;
   double begin, end;    /* times */
   size_t first_numbers; /* of its first state */
-  piece_wish wish;
+  piece_output output;
   double *vectors; /* [n + m][columns] tangent vectors: of the first numbers, of the first time if it is variable, of
                     * the others */
   size_t columns;
@@ -65,9 +65,9 @@ static inline tangents shooting_ends(const ric_shooting *s, const piece_run *run
   return (tangents){.columns = columns, .q = s->ends, .u = s->ends + s->arcs.coordinates * columns};
 }
 
-/** Sets s->x to the first state of a piece and returns the data of its run. @param wish  WISH_WHOLE with a spectrum
+/** Sets s->x to the first state of a piece and returns the data of its run. @param output  OUTPUT_WHOLE with a spectrum
  *  only */
-piece_run shooting_begin(ric_shooting *s, size_t piece, const double *z, double period, piece_wish wish);
+piece_run shooting_begin(ric_shooting *s, size_t piece, const double *z, double period, piece_output output);
 
 /** Integrates s->x to the end of the piece, and sets s->ends and the tangent vectors.
  *  @param watcher  may be NULL */

@@ -28,10 +28,10 @@ static bool has_time_vector(const ric_shooting *s, const arc_piece *p) {
   return s->forced && !fixed;
 }
 
-piece_run shooting_begin(ric_shooting *s, size_t piece, const double *z, double period, piece_wish wish) {
+piece_run shooting_begin(ric_shooting *s, size_t piece, const double *z, double period, piece_output output) {
   const arc_piece *p = &s->arcs.pieces[piece];
   size_t numbers = piece == 0 ? arcs_first_numbers(&s->arcs) : s->arcs.size;
-  bool whole = wish == WISH_WHOLE;
+  bool whole = output == OUTPUT_WHOLE;
   if (begins_even(s, piece))
     even_start(s, z, s->x);
   else
@@ -40,7 +40,7 @@ piece_run shooting_begin(ric_shooting *s, size_t piece, const double *z, double 
                      .begin = piece_begin(p, z, period),
                      .end = piece_finish(p, z, period),
                      .first_numbers = numbers,
-                     .wish = wish,
+                     .output = output,
                      .vectors = whole ? s->spectrum->vectors : s->vectors,
                      .columns = (whole ? s->arcs.size : numbers) + (has_time_vector(s, p) ? 1 : 0)};
 }
@@ -56,7 +56,7 @@ size_t shooting_column(const ric_shooting *s, const piece_run *run, size_t row) 
     return row;
   if ((s->arcs.at_start[i] != NO_UNKNOWN) == (row >= n))
     return i;
-  return run->wish == WISH_WHOLE ? run->columns - n + i : NO_UNKNOWN;
+  return run->output == OUTPUT_WHOLE ? run->columns - n + i : NO_UNKNOWN;
 }
 
 /* Initial tangent vectors: unit vectors; and minus the rates, for the time of the beginning. */
@@ -95,7 +95,7 @@ static void set_ends(ric_shooting *s, const piece_run *run) {
 }
 
 ric_status shooting_move(ric_shooting *s, const piece_run *run, const arc_watch *watcher, ric_error *error) {
-  if (run->wish == WISH_STATE)
+  if (run->output == OUTPUT_STATE)
     return arc_runner_move(&s->runner, run->begin, run->end, s->x, 0, NULL, watcher, error);
   RIC_TRY(set_tangents(s, run, error));
   RIC_TRY(arc_runner_move(&s->runner, run->begin, run->end, s->x, run->columns, run->vectors, watcher, error));
@@ -111,15 +111,15 @@ ric_status shooting_gap(ric_shooting *s, const piece_run *run, size_t obstacle, 
   tangents ends = shooting_ends(s, run), along = {.columns = 1, .q = s->rates, .u = s->rates + n};
   double rate = NAN, slope = NAN;
   const char *trouble = system->model->gap(system, obstacle, run->end, s->x, gap);
-  if (!trouble && run->wish != WISH_STATE)
+  if (!trouble && run->output != OUTPUT_STATE)
     trouble = system->model->gap_rate(system, obstacle, run->end, s->x, s->x + n, &rate);
-  if (!trouble && run->wish != WISH_STATE)
+  if (!trouble && run->output != OUTPUT_STATE)
     trouble = system->model->gap_derivative(system, obstacle, run->end, s->x, &ends, s->gap_row);
-  if (!trouble && run->wish != WISH_STATE)
+  if (!trouble && run->output != OUTPUT_STATE)
     trouble = system->model->gap_derivative(system, obstacle, run->end, s->x, &along, &slope);
   if (trouble)
     return ric_fail(error, RIC_ECALLBACK, "at t = %g, obstacle %zu: %s", run->end, obstacle, trouble);
-  for (size_t k = c; run->wish != WISH_STATE && k < c + 2; k++)
+  for (size_t k = c; run->output != OUTPUT_STATE && k < c + 2; k++)
     s->gap_row[k] += (rate - slope) * s->time_row[k];
   return RIC_OK;
 }
@@ -129,7 +129,7 @@ ric_status shooting_hit(ric_shooting *s, const piece_run *run, ric_error *error)
   double e = s->system->model->restitution(s->system, obstacle);
   jump_group group = {&obstacle, &e, 1, false};
   tangents ends = shooting_ends(s, run);
-  if (run->wish == WISH_STATE)
+  if (run->output == OUTPUT_STATE)
     ends.columns = 0;
   return tangent_jump_map(&s->jump, run->end, &group, s->x, s->x + n, &ends, s->time_row, error);
 }
@@ -245,7 +245,7 @@ static ric_status energy_equation(const equations *e, double given, ric_error *e
   double energy;
   if (a->energy_row == NO_UNKNOWN && a->lambda == NO_UNKNOWN)
     return RIC_OK;
-  (void)shooting_begin(s, 0, e->z, e->period, WISH_STATE);
+  (void)shooting_begin(s, 0, e->z, e->period, OUTPUT_STATE);
   RIC_TRY(shooting_energy(s, s->x, &energy, error));
   if (a->energy_row == NO_UNKNOWN)
     return RIC_OK;
@@ -287,16 +287,16 @@ static int forward_segment(const ric_segment *piece, double end, void *user) {
   return 0;
 }
 
-static piece_wish wish_of(const equations *e) {
+static piece_output output_of(const equations *e) {
   if (e->observer && e->observer->whole)
-    return WISH_WHOLE;
-  return wants_derivatives(e) ? WISH_DERIVATIVES : WISH_STATE;
+    return OUTPUT_WHOLE;
+  return wants_derivatives(e) ? OUTPUT_DERIVATIVES : OUTPUT_STATE;
 }
 
 static ric_status run_piece(const equations *e, size_t k, ric_error *error) {
   const shooting_observer *o = e->observer;
   const arc_watch watch = {.segment = forward_segment, .user = (void *)(uintptr_t)o};
-  piece_run run = shooting_begin(e->s, k, e->z, e->period, wish_of(e));
+  piece_run run = shooting_begin(e->s, k, e->z, e->period, output_of(e));
   double periods = (run.end - run.begin) / e->period;
   if (!(fabs(periods) <= longest_arc))
     return ric_fail(error, RIC_ENUMERIC, "an arc from t = %g to %g, expected at most %g periods of %g", run.begin,

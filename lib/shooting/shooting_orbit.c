@@ -13,7 +13,7 @@ static const double odd_part = 0.2371;
 /* Sets s->x to the first state, with changed speeds, so that every damper has a force. */
 static void set_general_state(ric_shooting *s, const double *z, double period) {
   size_t n = s->arcs.coordinates;
-  (void)shooting_begin(s, 0, z, period, WISH_STATE);
+  (void)shooting_begin(s, 0, z, period, OUTPUT_STATE);
   for (size_t i = 0; i < s->arcs.speeds; i++)
     s->x[n + i] += cos((double)(i + 1));
 }
@@ -326,7 +326,7 @@ static ric_status set_failure(ric_shooting *s, const double *z, ric_orbit *o, ri
 static ric_status set_start(ric_shooting *s, const double *z, double given, ric_orbit *o, ric_error *error) {
   size_t n = s->arcs.coordinates;
   RIC_TRY(shooting_period(s, z, given, &o->period, error));
-  piece_run run = shooting_begin(s, 0, z, o->period, WISH_STATE);
+  piece_run run = shooting_begin(s, 0, z, o->period, OUTPUT_STATE);
   memcpy(o->q, s->x, n * sizeof *s->x);
   if (s->arcs.speeds > 0)
     memcpy(o->v, s->x + n, s->arcs.speeds * sizeof *s->x);

@@ -57,7 +57,7 @@ ric_status shooting_spectrum_jump(ric_shooting *s, const piece_run *run, ric_err
 static ric_status pass_piece(transfer *k, size_t index, double shift, ric_error *error) {
   ric_shooting *s = k->s;
   const double slack = end_tol * k->period;
-  const piece_run run = shooting_begin(s, index, k->z, k->period, WISH_STATE);
+  const piece_run run = shooting_begin(s, index, k->z, k->period, OUTPUT_STATE);
   double begin = run.begin - k->origin, end = run.end - k->origin, from = k->from - shift, to = k->to - shift;
   if (end <= from + slack || begin > to + slack)
     return RIC_OK;
