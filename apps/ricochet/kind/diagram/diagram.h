@@ -37,17 +37,17 @@ bool diagram_wants(const study *s, const document *d, study_key key);
 int diagram_check(const study *s, const document *d, message *why);
 int basin_check(const study *s, const document *d, message *why);
 
-/** A row of zeros, and the attractor that is to be put into it: its arrays are those of the row, where it has them. */
+/** A row of zeros, and the attractor that will be stored in it: its arrays are those of the row, if it has them. */
 diagram_row diagram_begin_row(const table *rows, unsigned char *row, ric_attractor *attractor);
 
-/** Says it of the row, which borrows its arrays. */
+/** Stores the attractor in the row, which borrows its arrays. */
 void diagram_put_row(diagram_row *row, const ric_attractor *attractor);
 
 /** The table of windows along the last sweep (kind.h). */
 int diagram_windows(const study *s, const kind_plan *plan, const row_source *done, ric_poll poll, extra_rows *extra,
                     message *why);
 
-/** The tables of the attractors of a basin, and of which one each task comes to. */
+/** The tables of the attractors of a basin, and of the attractor to which each task converges. */
 int basin_attractors(const study *s, const kind_plan *plan, const row_source *done, ric_poll poll, extra_rows *extra,
                      message *why);
 

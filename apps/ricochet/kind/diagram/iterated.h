@@ -1,7 +1,7 @@
 /* What studies of kinds `diagram` and `basin` iterate: a map, or the crossings of a motion with a section.
  *
- * Maps go to their attractors several at once, side by side in vector lanes; motions one by one. What comes out does
- * not depend on how tasks are put together. */
+ * Several maps are iterated at once, side by side in SIMD lanes; motions run one by one. Results do not depend on which
+ * tasks run together. */
 #ifndef RICOCHET_APP_ITERATED_H
 #define RICOCHET_APP_ITERATED_H
 
@@ -9,24 +9,24 @@
 
 /** Numbers of a state that such a study iterates: of the map, or of the section. */
 size_t diagram_state_size(const study *s);
-/** Which of them is observed. */
+/** Index of the observed one. */
 size_t diagram_observed(const study *s);
-/** Whether it is a diagram that looks for grazing first, and says how far beyond it stands. */
+/** Whether it is a diagram with grazing.beyond. */
 bool diagram_is_beyond(const study *s);
 /** Whether windows along its last sweep are to be listed. */
 bool diagram_has_windows(const study *s);
 
-/** A task that waits to be run, of a map. */
+/** A task of a map, ready to run. */
 typedef struct iterated_map {
   ric_grazing_map map;
   double d;
   ric_attractor_options options;
-  ric_error refused; /* why it cannot be run; its status is RIC_OK where it can */
+  ric_error refused; /* why it cannot be run; status RIC_OK if it can */
 } iterated_map;
 
 typedef struct iterated {
   const study *study;
-  study_values *values; /* whose present task is taken; moved by the owner */
+  study_values *values; /* the owner sets their task */
   ric_poll poll;
   size_t size;  /* numbers of a state */
   size_t slots; /* most tasks that run at once */
@@ -39,36 +39,36 @@ typedef struct iterated {
   lattice_model model;
   ric_motion_section_options section;
   ric_attractor_options options;
-  ric_error refused; /* why the task cannot be run; its status is RIC_OK where it can */
-  beyond *beyond;    /* of studies that stand beyond a grazing point, else NULL */
+  ric_error refused; /* why the task cannot be run; status RIC_OK if it can */
+  beyond *beyond;    /* of studies with grazing.beyond, else NULL */
 } iterated;
 
 /** Most tasks that run at once. */
 size_t iterated_slots(const study *s);
 
-/** Bytes that it takes. */
+/** Its memory in bytes. */
 double iterated_bytes(const study *s, const study_values *v);
 
 /** @param it  iterated_clear also after a refusal  @returns 0, or EXIT_RUN without memory */
 int iterated_init(iterated *it, const study *s, ric_poll poll, message *why);
 void iterated_clear(iterated *it);
 
-/** Iterates over which impacts and exponents of the present task are averaged. */
+/** Iterates over which impacts and exponents of the current task are averaged. */
 size_t iterated_measured(const iterated *it);
 
-/** Takes the present task as the one of a slot, with its start.
+/** Reads the current task into a slot, with its start.
  *  @param z  [size] set */
 void iterated_take(iterated *it, size_t slot, double *z);
 
-/** Reads the lattice of the present values: beyond grazing, at the parameter where they stand.
+/** Reads the lattice of the current values; with grazing.beyond, at the parameter that follows from it.
  *  @returns as beyond_find */
 ric_status iterated_read_model(iterated *it, ric_error *error);
 
 /** Period of the force of a lattice; 0 where it has none. */
 double iterated_period(const lattice_model *model);
 
-/** Runs the first `count` slots to their attractors, whose arrays and starts the caller has set. What cannot be run has
- *  failed, with the reason.
+/** Runs the first `count` slots to their attractors, whose arrays and starts the caller has set. A slot that cannot be
+ *  run gets the outcome `failed` with its reason.
  *  @returns RIC_OK, RIC_ESTOPPED */
 ric_status iterated_run(iterated *it, size_t count, ric_attractor *attractors);
 

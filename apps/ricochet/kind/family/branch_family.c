@@ -10,12 +10,13 @@
 
 static const double pi = 3.14159265358979323846;
 
-/* Steps where the study gives none, as parts of the way from the start to the other end. */
-static const double first_part = 0.02, most_part = 0.1, least_part = 1e-6 /* of the first step */;
-/* Of curves in two parameters, as parts of the range of the second one: shorter, so that their points draw smoothly.
- * They often end where the motions do, at a period without end or a point that is special twice: there, steps that
- * shrink further cost much and show nothing. */
-static const double trace_first_part = 0.01, trace_most_part = 0.02, trace_least_part = 1e-3 /* of the first step */;
+/* Default steps, as fractions of the distance from the start to the other end. */
+static const double first_fraction = 0.02, most_fraction = 0.1, least_fraction = 1e-6 /* of the first step */;
+/* Of curves in two parameters, as fractions of the range of the second one: shorter, for smooth figures. They often end
+ * with the motions, where the period grows without bound or at a degenerate special point; shorter steps there are
+ * expensive and of no use. */
+static const double trace_first_fraction = 0.01, trace_most_fraction = 0.02,
+                    trace_least_fraction = 1e-3 /* of the first step */;
 
 /* --- parameters --- */
 
@@ -23,8 +24,8 @@ double branch_family_parameter(const branch_family *b, double value) {
   return b->log ? log(value) : value;
 }
 
-/* The values that the study names come back as the same bits, whatever rounding does to the curve's parameter: a bound
- * may be the end of what the model takes. */
+/* Values that the study gives are returned with the same bits, in spite of rounding of the curve's parameter: a bound
+ * may be the limit of the model's range. */
 double branch_family_value(const branch_family *b, double parameter) {
   static const study_key named[] = {KEY_BRANCH_FROM, KEY_BRANCH_TO, KEY_BRANCH_LOW, KEY_BRANCH_HIGH};
   for (size_t i = 0; i < sizeof named / sizeof *named; i++) {
@@ -67,7 +68,7 @@ static bool is_of_model(const study_parameter *p) {
   return p && p->key != KEY_ORBIT_PERIOD && p->key != KEY_ORBIT_ENERGY;
 }
 
-/* Puts the parameters into the values. */
+/* Sets the parameters in the values. */
 static ric_status move(branch_family *b, const double *p, ric_error *error) {
   const double value = branch_family_value(b, p[0]);
   if (schema_check(b->followed->key, value) != FIT_OK)
@@ -80,7 +81,7 @@ static ric_status move(branch_family *b, const double *p, ric_error *error) {
   return RIC_OK;
 }
 
-/* Puts the parameters into the values, and these into the system. */
+/* Sets the parameters in the values, and the values in the system. */
 static ric_status set(ric_system *system, const double *p, double *given, void *user, ric_error *error) {
   branch_family *b = user;
   RIC_TRY(move(b, p, error));
@@ -128,7 +129,7 @@ void branch_family_clear(branch_family *b) {
 
 /* --- the problem --- */
 
-/* Nothing jumps at a Hertz contact: the particles that press it are part of the guess only. */
+/* Velocities do not jump at a Hertz contact: its particles are used for the first guess only. */
 static bool is_compliant(const study_values *v) {
   return value_number(v, KEY_MODEL_HERTZ, 0) > 0;
 }
@@ -195,11 +196,11 @@ static ric_family_options options_of(const branch_family *b, int rise) {
   o.curve.points = (size_t)value_number(v, KEY_BRANCH_POINTS, 0);
   o.curve.newton_tol = value_number(v, KEY_BRANCH_TOLERANCE, 0);
   o.curve.poll = b->poll;
-  /* A step that is given moves the defaults of the others. */
+  /* A given step changes the defaults of the others. */
   const double least = step(v, KEY_BRANCH_STEP_LEAST, 0), most = step(v, KEY_BRANCH_STEP_MOST, INFINITY);
-  o.curve.step = step(v, KEY_BRANCH_STEP, fmax(least, fmin(most, first_part * way)));
-  o.curve.step_least = least > 0 ? least : least_part * o.curve.step;
-  o.curve.step_most = most < INFINITY ? most : fmax(o.curve.step, most_part * way);
+  o.curve.step = step(v, KEY_BRANCH_STEP, fmax(least, fmin(most, first_fraction * way)));
+  o.curve.step_least = least > 0 ? least : least_fraction * o.curve.step;
+  o.curve.step_most = most < INFINITY ? most : fmax(o.curve.step, most_fraction * way);
   return o;
 }
 
@@ -213,9 +214,9 @@ ric_curve_options branch_family_curve_options(const branch_family *b, int direct
   o.newton_tol = value_number(v, KEY_BRANCH_TOLERANCE, 0);
   o.poll = b->poll;
   const double way = o.p_high - o.p_low, most = step(v, KEY_BRANCH_TRACE_STEP_MOST, INFINITY);
-  o.step = step(v, KEY_BRANCH_TRACE_STEP, fmin(most, trace_first_part * way));
-  o.step_least = trace_least_part * o.step;
-  o.step_most = most < INFINITY ? most : fmax(o.step, trace_most_part * way);
+  o.step = step(v, KEY_BRANCH_TRACE_STEP, fmin(most, trace_first_fraction * way));
+  o.step_least = trace_least_fraction * o.step;
+  o.step_most = most < INFINITY ? most : fmax(o.step, trace_most_fraction * way);
   return o;
 }
 
@@ -236,7 +237,7 @@ ric_status branch_family_open(branch_family *b, ric_poll poll, ric_error *error)
   return ric_shooting_create(b->system, &motion, &b->first, error);
 }
 
-/* The energy at which a branch starts lies within the bounds that the study gives. */
+/* The energy at the start must be within the bounds of the study. */
 static ric_status check_energy(const branch_family *b, double energy, ric_error *error) {
   const double low = value_number(b->values, KEY_BRANCH_LOW, 0), high = value_number(b->values, KEY_BRANCH_HIGH, 0);
   if (energy < low)
@@ -258,12 +259,12 @@ ric_status branch_family_begin(branch_family *b, double energy, int rise, ric_er
   return make_family(b, rise, error);
 }
 
-/* Matrices of the unknowns, of which every arc of a motion that is not even brings a state, tangent vectors, and
- * matrices of the multipliers. */
+/* Matrices of the unknowns (a state for every arc of a motion that is not even), tangent vectors, and matrices of the
+ * multipliers. */
 double branch_family_bytes(const study_values *v) {
   const double n = value_number(v, KEY_MODEL_PARTICLES, 0);
   const bool extends = value_flag(v, KEY_BRANCH_CROSS) || value_flag(v, KEY_BRANCH_SWITCH);
-  const bool traces = value_present(v, KEY_BRANCH_TRACE_PARAMETER); /* a curve takes as much as a segment */
+  const bool traces = value_present(v, KEY_BRANCH_TRACE_PARAMETER); /* a curve needs as much as a segment */
   const double segments = (extends ? value_number(v, KEY_BRANCH_SEGMENTS, 0) : 1) + (traces ? 1 : 0);
   const double arcs = 1 + (double)value_count(v, KEY_ORBIT_SEQUENCE) + (extends ? 1 : 0);
   const double unknowns = 2 * n * arcs + 8;

@@ -36,11 +36,11 @@ typedef struct orbits_row {
 /** Lays out the row. */
 void orbits_lay_out(const study_values *v, table *t);
 
-/** The result of a verification without an answer: `run_failed` with the error's message.
+/** The result of a verification that could not be run: `run_failed` with the error's message.
  *  @returns RIC_OK or RIC_ESTOPPED */
 ric_status orbits_verified(ric_status status, const ric_error *error, ric_verification *verification);
 
-/** What every orbit has in its row, and what the verifier found of it; of the rest nothing. Borrows all of them. */
+/** Row of an orbit and its verification; all other members are empty. Borrows both. */
 orbits_row orbits_row_of(const ric_orbit *orbit, const char *reason, const ric_verification *verification);
 
 /* Resonances, singular points and critical parameters along the sweep of an `orbits` study: the table `special`. */
