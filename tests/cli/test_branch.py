@@ -36,21 +36,21 @@ def test_parameters_are_refused_by_name_with_the_nearest_one(ricochet, folder):
         ("model.gamma", "branch.step", 13, "branch.parameter = branch.step cannot be followed"),
         ("model.gamma", "model.gamma[0]", 13, "model.gamma is a single number here: follow model.gamma without"),
         ("to: 0.15\n", "to: 0.15\nsweep: {parameter: model.gamma, values: [0, 1]}\n", 13,
-         "branch.parameter = model.gamma is swept, too"),
+         "branch.parameter = model.gamma is also swept"),
         ("  parameter: model.gamma\n", "", 0, "missing key branch.parameter (text)"),
         ("model.gamma\n  from: 0\n", "model.hertz\n", 13, "missing key branch.from (a number): model.hertz has no value"),
-        ("model.gamma\n  from: 0\n  to: 0.15", "model.gamma\n  to: 0", 14, "branch.to = 0 is where the branch starts"),
+        ("model.gamma\n  from: 0\n  to: 0.15", "model.gamma\n  to: 0", 14, "branch.to = 0 is the start of the branch"),
     ])
 
 
 def test_ranges_and_steps_are_refused_by_place_and_value(ricochet, folder):
     to = "to: 0.15\n"
     refuse(ricochet, folder, [
-        ("to: 0.15", "to: 0", 15, "branch.to = 0 is where the branch starts, expected another value"),
+        ("to: 0.15", "to: 0", 15, "branch.to = 0 is the start of the branch, expected another value"),
         ("from: 0\n", "from: -0.1\n", 14, "branch.from (model.gamma) = -0.1 is out of range, expected a number >= 0"),
-        (to, to + "  low: 0.1\n", 16, "branch.low = 0.1 leaves out the start, expected at most branch.from = 0"),
+        (to, to + "  low: 0.1\n", 16, "branch.low = 0.1 is above the start, expected at most branch.from = 0"),
         ("from: 0\n  to: 0.15\n", "from: 0.1\n  to: 0\n  high: 0.05\n", 16,
-         "branch.high = 0.05 leaves out the start, expected at least branch.from = 0.1"),
+         "branch.high = 0.05 is below the start, expected at least branch.from = 0.1"),
         (to, to + "  high: 0\n", 16, "branch.low and branch.high are both 0, expected low < high"),
         (to, to + "  low: -1\n", 16, "branch.low (model.gamma) = -1 is out of range, expected a number >= 0"),
         (to, to + "  scale: log\n", 14, "branch.from = 0 with scale: log, expected a number > 0"),
@@ -80,7 +80,7 @@ def test_motions_that_do_not_fit_the_model_are_refused(ricochet, folder):
         (period, period + "  forcing_periods: 2\n", 11, "orbit.forcing_periods and orbit.period both give the period"),
         (period, period + "  sequence: [2]\n", 11, "orbit.times has 0 elements, expected 1"),
         (period, period + "  sequence: [6]\n  times: [1]\n", 11, "orbit.sequence[0] = 6 is out of range"),
-        (period, period + "  sequence: [1, 2]\n  times: [1, 0.5]\n", 12, "orbit.times[1] lies before orbit.times[0]"),
+        (period, period + "  sequence: [1, 2]\n  times: [1, 0.5]\n", 12, "orbit.times[1] is smaller than orbit.times[0]"),
         (period, period + "  excited: [2]\n", 11, "orbit.excited gives a first guess, and so do the impacts"),
         ("  at_start: [3]\n", "", 0, "kind: branch has no first guess, expected the section start, orbit.excited"),
         ("at_start: [3]", "at_start: [6]", 11, "orbit.at_start[0] = 6 is out of range, expected a particle from 0 to 5"),
@@ -302,11 +302,11 @@ def test_restarts_that_cannot_be_are_refused(ricochet, folder):
         (["restart.task=1"], USAGE, "s.h5: ", "restart.task = 1, expected a task from 0 to 0"),
         (["restart.special=null"], USAGE, "r.yaml:6: ", "restart has neither special nor point"),
         (["restart.point=1"], USAGE, "r.yaml:6: ", "restart has both special and point"),
-        (["restart.special=null", "restart.point=1"], USAGE, "s.h5: ", "no states of points", "branch.states: true"),
+        (["restart.special=null", "restart.point=1"], USAGE, "s.h5: ", "the points have no states", "branch.states: true"),
         (["restart.file=no.h5"], program.FILES, "no.h5: ", "No such file"),
         (["restart.file=r.yaml"], program.FILES, "r.yaml: "),
         (["restart.file=o.h5"], program.FILES, "o.h5: ", "not a result of kind branch"),
-        (["branch.high=0.05"], USAGE, "--set branch.high=0.05: branch.high = 0.05 leaves out the start"),
+        (["branch.high=0.05"], USAGE, "--set branch.high=0.05: branch.high = 0.05 is below the start"),
         (["model.particles=2"], USAGE, "restart from s.h5: ", "start.q has 1 elements, expected 2"),
     ]
     for sets, code, place, *phrases in cases:

@@ -24,15 +24,15 @@ def test_curves_are_refused_by_place_and_value(ricochet, folder):
         ("model.frequency,", "model.frequencie,", 6, "unknown trace parameter 'model.frequencie'; did you mean"),
         ("model.frequency,", "model.ends,", 6, "branch.trace.parameter = model.ends cannot be followed: it is a word"),
         ("model.frequency,", "start.q,", 6, "branch.trace.parameter = start.q cannot be followed, expected"),
-        ("model.frequency,", "model.force,", 6, "branch.trace.parameter = model.force is what the branch is followed"),
-        ("model.frequency,", "model.hertz,", 6, "branch.trace.parameter = model.hertz has no value at which"),
-        ("model.frequency,", "orbit.period,", 6, "branch.trace.parameter = orbit.period, but forced decides"),
+        ("model.frequency,", "model.force,", 6, "branch.trace.parameter = model.force is already branch.parameter"),
+        ("model.frequency,", "model.hertz,", 6, "branch.trace.parameter = model.hertz is null in the study"),
+        ("model.frequency,", "orbit.period,", 6, "branch.trace.parameter = orbit.period, but forced determines"),
         (f"{range_}}}}}", f"{range_}}}}}\nsweep: {{parameter: model.frequency, values: [0.8]}}", 6,
-         "branch.trace.parameter = model.frequency is swept, too"),
+         "branch.trace.parameter = model.frequency is also swept"),
         ("parameter: model.frequency, ", "", 0, "missing key branch.trace.parameter (text)"),
         ("low: 0.3, ", "", 0, "missing key branch.trace.low (a number)"),
-        ("low: 0.3", "low: 0.9", 6, "branch.trace.low = 0.9 leaves out where curves begin, expected at most"),
-        ("high: 3", "high: 0.7", 6, "branch.trace.high = 0.7 leaves out where curves begin, expected at least"),
+        ("low: 0.3", "low: 0.9", 6, "branch.trace.low = 0.9 is above the start of curves, expected at most"),
+        ("high: 3", "high: 0.7", 6, "branch.trace.high = 0.7 is below the start of curves, expected at least"),
         (range_, "low: 0.8, high: 0.8", 6, "branch.trace.low = 0.8, expected less than branch.trace.high = 0.8"),
         ("low: 0.3", "low: -1", 6, "branch.trace.low (model.frequency) = -1 is out of range, expected a number >"),
         ("high: 3", "high: 3, first_low: 2, first_high: 1", 6, "branch.trace.first_low = 2, expected less than"),
@@ -54,7 +54,7 @@ def test_curves_are_refused_by_place_and_value(ricochet, folder):
     ricochet("check", "s.yaml", cwd=folder).expect_refused(USAGE, "s.yaml:4: branch.trace.low is a key of kind: branch")
     write(folder, "s.yaml", TRACE)
     ricochet("check", "s.yaml", "--set", "branch.trace.low=1", cwd=folder).expect_refused(
-        USAGE, "--set branch.trace.low=1: branch.trace.low = 1 leaves out where curves begin")
+        USAGE, "--set branch.trace.low=1: branch.trace.low = 1 is above the start of curves")
     ricochet("check", "s.yaml", "--set", "branch.trace={}", cwd=folder).expect_done()
 
 

@@ -56,7 +56,7 @@ def test_keys_and_values_are_refused_by_place_and_value(ricochet, folder):
         ("grazing: {section: 0.25}", "grazing: 3", 5, "grazing = 3, expected a mapping of the keys section, coefficients"),
         ("to: 50", "to: 50, cross: true", 4, "branch.cross is a key of kind: branch, and this is kind: grazing"),
         ("to: 50", "to: 50, multipliers: all", 4, "branch.multipliers is a key of kind: branch"),
-        ("to: 50", "to: 1", 4, "branch.to = 1 is where the branch starts"),
+        ("to: 50", "to: 1", 4, "branch.to = 1 is the start of the branch"),
         ("model.force,", "model.forse,", 4, "unknown branch parameter 'model.forse'; did you mean 'model.force'?"),
         ("grazing: {section", "restart: {file: s.h5, point: 0}\ngrazing: {section", 5, "restart.file is a key of kind: branch"),
         (section + "}", "windows: 3}\nsweep: {parameter: grazing.windows, values: [1, 2]}", 6,

@@ -46,11 +46,11 @@ def test_keys_of_a_type_of_model_are_refused_by_name(ricochet, folder):
         ("orbit.energy, from", "model.gamma, from", f"s.yaml:4: branch.parameter = model.gamma {but}"),
         ("[3, 1]", "[3, 1, 1]", "s.yaml:2: model.stiffness has 3 elements, expected 2"),
         ("mode: 0", "mode: 2", "s.yaml:3: orbit.mode = 2 is out of range, expected a mode from 0 to 1"),
-        ("mode: 0", "mode: 0, period: 7", "s.yaml:3: orbit.period, but orbit.mode brings its own, expected one of them"),
+        ("mode: 0", "mode: 0, period: 7", "s.yaml:3: orbit.period and orbit.mode both give a period, expected one of them"),
         ("mode: 0", "mode: 0, at_start: [1]", "s.yaml:3: orbit.mode gives a first guess, and so do the impacts"),
         ("mode: 0", "period: 7, at_start: [0]", "s.yaml:3: orbit.at_start[0] = 0 has no floor or wall to hit"),
-        ("mode: 0", "mode: 0, swings: 2", "s.yaml:3: orbit.swings counts those of orbit.mode between impacts"),
-        ("orbit.energy, from", "model.wall, from", "s.yaml:3: orbit.mode without an energy"),
+        ("mode: 0", "mode: 0, swings: 2", "s.yaml:3: orbit.swings counts periods of orbit.mode between impacts"),
+        ("orbit.energy, from", "model.wall, from", "s.yaml:3: orbit.mode needs an energy"),
         ("orbit.energy, from: 0.05", "orbit.energy", "s.yaml:4: missing key branch.from (a number)"),
         ("mode: 0}\nbranch: {parameter: orbit.energy, from: 0.05,",
          "period: 7, at_start: [1]}\nbranch: {parameter: orbit.energy, low: 7, high: 5,",
@@ -66,9 +66,9 @@ def test_keys_of_a_type_of_model_are_refused_by_name(ricochet, folder):
 
 def test_starts_at_touches_are_refused_by_what_they_lack(ricochet, folder):
     for old, new, phrase in [
-        ("at_start: [1]", "at_half: [1]", "s.yaml:4: missing key branch.from (a number): at which energy the branch starts"),
+        ("at_start: [1]", "at_half: [1]", "s.yaml:4: missing key branch.from (a number), the energy at the start"),
         ("low: 1", "low: 1, from: 2", "s.yaml:3: orbit.mode gives a first guess, and so do the impacts"),
-        ("wall: 2", "wall: 2, hertz: 100", "s.yaml:3: orbit.mode with orbit.at_start: the mode touches a rigid obstacle"),
+        ("wall: 2", "wall: 2, hertz: 100", "s.yaml:3: orbit.mode with orbit.at_start: the mode grazes a rigid obstacle"),
         ("mode: 0,", "mode: 0, swings: 0,", "s.yaml:3: orbit.swings = 0 is out of range"),
     ]:
         assert TOUCH.count(old) == 1, old

@@ -135,9 +135,9 @@ static void maps_are_given_by_three_numbers_or_by_lists(void **state) {
       {listed, "xi: [1, 1]", "xi: [1]", "s.yaml:6: ", "model.xi has 1 elements, expected 2: model.eta has 2"},
       {listed, "  xi: [1, 1]\n", "", "s.yaml:5: ", "model.xi has 0 elements, expected 2: model.eta has 2"},
       {listed, "kappa: []", "kappa: [1, 2, 3]", "s.yaml:7: ", "model.kappa has 3 elements, expected 2"},
-      {listed, "d: 0.01", "d: 0.01\n  omega: 1", "s.yaml:9: ", "model.omega is of the example map, and model.L gives"},
+      {listed, "d: 0.01", "d: 0.01\n  omega: 1", "s.yaml:9: ", "model.omega and model.L both give the map"},
       {listed, "", "sweep: {parameter: model.lambda, values: [1]}\n",
-       "s.yaml:10: ", "model.lambda is of the example map"},
+       "s.yaml:10: ", "model.lambda and model.L both give the map"},
       {listed, "", "sweep: {parameter: 'model.L[4]', values: [1]}\n", "s.yaml:10: ", "expected an index from 0 to 3"},
       {listed, "", "sweep: {parameter: 'model.kappa[0]', values: [1]}\n",
        "s.yaml:10: ", "model.kappa is an empty list"},
@@ -234,9 +234,9 @@ static void lines_need_a_sweep_and_windows_one_that_rises_or_falls(void **state)
                                 "model.d are neither";
   static const refused_case cases[] = {
       {map, "keep: 50", "follow: true",
-       "s.yaml:3: ", "iterate.follow = true goes along the last sweep, and there is none"},
+       "s.yaml:3: ", "iterate.follow = true refers to the last sweep, but the study has none"},
       {map, "keep: 50", "windows: true",
-       "s.yaml:3: ", "iterate.windows = true goes along the last sweep, and there is none"},
+       "s.yaml:3: ", "iterate.windows = true refers to the last sweep, but the study has none"},
       {map, "keep: 50}", "windows: true}\nsweep: {parameter: model.d, values: [1, 2, 1]}", "s.yaml:3: ", neither},
       {map, "keep: 50}", "windows: true}\nsweep: {parameter: model.d, values: [1, 1]}", "s.yaml:3: ", neither},
       {map, "keep: 50}", "windows: true}\nsweep: {parameter: model.d, values: [1, 2], back: true}",

@@ -13,13 +13,13 @@ int command_examples(int argc, char **argv);
 /** The option that getopt_long has just refused, as the user wrote it. @param text  [3] for a short one */
 const char *refused_option(char **argv, char text[3]);
 
-/** Prints "ricochet: MESSAGE" on standard error, or the bare message when it begins with a place; returns code. */
+/** Prints "ricochet: MESSAGE" on standard error, or MESSAGE alone if it begins with a place; returns code. */
 int complain(int code, const message *why);
 
 /** Flushes standard output; a failed write is EXIT_FILES. */
 int finish_output(int code);
 
-/** What the program was built as: for --version and the result's attributes. */
+/** The build of the program, for --version and the result's attributes. */
 const char *build_version(void);
 const char *build_git_sha(void);
 const char *build_compiler(void);

@@ -5,20 +5,20 @@
 #include "../run/ranks.h"
 #include "../run/scheduler.h"
 
-enum { MOST_BYTES = 64 << 20 /* of rows, and of tails, that a rank holds, unless one task has more */ };
+enum { MOST_BYTES = 64 << 20 /* of rows, and of ragged tables, that a rank holds, unless one task has more */ };
 
-/* One rank at work. */
+/* The state of one rank. */
 typedef struct rank {
   const kind_plan *plan;
   const kind *kind;
   worker *worker;
   checkpoint *checkpoint;
   scheduler *scheduler;
-  unsigned char *rows;            /* [capacity] of the run of tasks at hand */
+  unsigned char *rows;            /* [capacity] of the current run of tasks */
   uint64_t *counts;               /* [capacity][tails] */
-  records tails[KIND_MOST_TAILS]; /* of all its tasks */
+  records tails[KIND_MOST_TAILS]; /* of the tasks not yet appended */
   uint64_t capacity, done;
-  uint64_t batch, unit; /* most tasks evaluated at once; tasks of which chunks are made: one, or a whole batch */
+  uint64_t batch, unit; /* most tasks evaluated at once; chunks are multiples of `unit`, one task or a batch */
   progress *progress;
   double sync_interval, synced;
 } rank;
@@ -47,7 +47,7 @@ static int grow(rank *r, uint64_t tasks, message *why) {
   return 0;
 }
 
-/* Evaluates tasks as those from the `at`-th on of the run at hand. @returns 0, or -1 when it was stopped */
+/* Evaluates tasks into the rows from the `at`-th on. @returns 0, or -1 if the run was stopped */
 static int evaluate_batch(rank *r, task_range tasks, uint64_t at) {
   uint64_t before[KIND_MOST_TAILS], *counts = r->counts + at * r->plan->tail_count;
   for (size_t k = 0; k < r->plan->tail_count; k++)
@@ -79,8 +79,8 @@ static int append(rank *r, uint64_t first, uint64_t count, message *why) {
   return code;
 }
 
-/* Consecutive tasks, whole units of them, appended as one record; as several when their tails are large, and fewer when
- * the run is stopped in between. */
+/* Evaluates consecutive tasks, whole units of them, and appends them as one record: as several if their ragged tables
+ * are large, and fewer tasks if the run is stopped in between. */
 static int evaluate_run(rank *r, uint64_t first, uint64_t count, int *stopped, message *why) {
   int code = grow(r, count, why);
   uint64_t finished = 0;

@@ -37,7 +37,7 @@ int output_name(output *out, const run_options *o, message *why) {
   if (length <= 0 || length >= 4000)
     return refuse(why, EXIT_USAGE, "-o: a path of %d bytes, expected 1 to 3999", length);
   if (is_same_file(out->path, o->study_path))
-    return refuse(why, EXIT_USAGE, "%s: is the study itself; use -o for another name", out->path);
+    return refuse(why, EXIT_USAGE, "%s: the output would replace the study itself; use -o for another name", out->path);
   if (is_folder(out->path))
     return refuse(why, EXIT_USAGE, "%s: is a folder, expected the name of a file", out->path);
   snprintf(out->folder, sizeof out->folder, "%s.ckpt", out->path);
@@ -64,12 +64,12 @@ static int refuse_existing(const output *out, message *why) {
                 out->path);
 }
 
-static int look_around(const output *out, const run_options *o, message *why) {
+static int check_existing(const output *out, const run_options *o, message *why) {
   if (o->resume)
     return 0;
   if (o->force)
     return checkpoint_remove(out->folder, why);
-  if (exists(out->path)) /* again: it may have come while the lock was taken */
+  if (exists(out->path)) /* again: it may have been created before the lock was taken */
     return refuse_existing(out, why);
   if (has_checkpoint(out->folder))
     return refuse(why, EXIT_USAGE,
@@ -82,14 +82,14 @@ int output_claim(output *out, const run_options *o, message *why) {
     return refuse_existing(out, why);
   int code = lock_take(out->folder, o->resume ? 10 : 0, &out->lock, why);
   if (!code)
-    code = look_around(out, o, why);
+    code = check_existing(out, o, why);
   if (code)
     lock_release(&out->lock, 1);
   return code;
 }
 
-int output_look_at_result(const output *out, uint64_t digest, uint64_t tasks, uint64_t done, bool *finished,
-                          message *why) {
+int output_check_result(const output *out, uint64_t digest, uint64_t tasks, uint64_t done, bool *finished,
+                        message *why) {
   uint64_t theirs = 0;
   message detail;
   *finished = false;
@@ -97,7 +97,7 @@ int output_look_at_result(const output *out, uint64_t digest, uint64_t tasks, ui
     return 0;
   bool sound = result_study_digest(out->path, &theirs, &detail) == 0 && result_verify(out->path, &detail) == 0;
   *finished = sound && theirs == digest;
-  if (*finished || done == tasks) /* a complete checkpoint replaces whatever a forced run was to replace */
+  if (*finished || done == tasks) /* a complete checkpoint replaces the result, as the forced run would have */
     return 0;
   if (!sound)
     return refuse(why, EXIT_FILES, "%s; use --force to compute it again", detail.text);
@@ -109,7 +109,7 @@ int output_check_room(const output *out, double needed, message *why) {
   double disk = machine_disk(out->path);
   if (needed <= disk)
     return 0;
-  return refuse(why, EXIT_FILES, "%s: checkpoint and result take %s more, the folder has %s free", out->path,
+  return refuse(why, EXIT_FILES, "%s: checkpoint and result need %s more, but the folder has %s free", out->path,
                 machine_size(needed, needs, sizeof needs), machine_size(disk, has, sizeof has));
 }
 
@@ -119,7 +119,7 @@ int output_join(output *out, message *why) {
 }
 
 void output_release(output *out, bool drop) {
-  message ignored; /* a checkpoint that stays behind is no failure of the run */
+  message ignored; /* a checkpoint that cannot be removed is not a failure of the run */
   if (ranks_rank() == 0 && drop)
     checkpoint_remove(out->folder, &ignored);
   if (ranks_rank() != 0)

@@ -29,7 +29,7 @@ static const char help[] =
     "Exit codes: 0 done (the last line counts the outcomes of the tasks), 1 the run cannot go on, 2 bad usage or\n"
     "study, 3 cannot read or write, 75 stopped by SIGUSR1 or --max-time: --resume goes on.\n";
 
-/* A run in all its parts, as one rank sees it. */
+/* The state of a run on one rank. */
 typedef struct run {
   run_options options;
   study *study;
@@ -39,7 +39,7 @@ typedef struct run {
   checkpoint *checkpoint;
   compute_result computed;
   extra_rows extras[KIND_MOST_EXTRAS];
-  table offsets; /* of the tails; no columns without any */
+  table offsets; /* of the ragged tables; no columns without any */
   char *command;
   double began;
   uint64_t resumed;
@@ -47,7 +47,7 @@ typedef struct run {
   uint64_t outcomes[64]; /* tasks by word of the outcome column */
 } run;
 
-/* Rank 0 reads the file, the others what it has made of it. */
+/* Rank 0 reads the file and broadcasts the resulting text, which the other ranks parse. */
 static int load(run *r, message *why) {
   const run_options *o = &r->options;
   const bool first = ranks_rank() == 0;
@@ -55,7 +55,7 @@ static int load(run *r, message *why) {
   code = ranks_agree(code, why);
   if (code)
     return code;
-  char *text = first ? (char *)(uintptr_t)study_text(r->study) : NULL; /* read only: rank 0 gives it away */
+  char *text = first ? (char *)(uintptr_t)study_text(r->study) : NULL; /* not written: rank 0 broadcasts it */
   size_t length = first ? strlen(text) : 0;
   code = ranks_share_text(&text, &length, why);
   const study_source shared = {.schema = &studies, .name = o->study_path, .text = text, .length = length};
@@ -77,13 +77,13 @@ static int claim(run *r, message *why) {
   return code ? code : output_join(&r->output, why);
 }
 
-/* Rank 0 looks at the result that may be there and at the room for the one to come, which holds every row once; the
- * checkpoint grows by those that are missing. */
-static int look_before_computing(run *r, message *why) {
+/* Rank 0 checks an existing result and the free space: the new result holds every row once, the checkpoint grows by the
+ * missing rows. */
+static int check_before_computing(run *r, message *why) {
   uint64_t tasks = study_tasks(r->study);
   double row = (double)r->plan.rows.row_bytes;
   int code = r->options.resume
-                 ? output_look_at_result(&r->output, study_digest(r->study), tasks, r->resumed, &r->finished, why)
+                 ? output_check_result(&r->output, study_digest(r->study), tasks, r->resumed, &r->finished, why)
                  : 0;
   if (!code && !r->finished)
     code = output_check_room(&r->output, row * (double)tasks + row * (double)(tasks - r->resumed), why);
@@ -100,7 +100,7 @@ static int open_checkpoint(run *r, message *why) {
   if (code)
     return code;
   r->resumed = checkpoint_done(r->checkpoint);
-  code = ranks_agree(ranks_rank() == 0 ? look_before_computing(r, why) : 0, why);
+  code = ranks_agree(ranks_rank() == 0 ? check_before_computing(r, why) : 0, why);
   ranks_share(&r->finished, sizeof r->finished);
   return code;
 }
@@ -112,7 +112,7 @@ static int read_done(void *user, uint64_t first, uint64_t count, unsigned char *
   return checkpoint_read(r->checkpoint, first, count, rows, why);
 }
 
-/* Rows for the writer; counts outcomes on the way. */
+/* Rows for the writer; also counts the outcomes. */
 static int read_rows(void *user, uint64_t first, uint64_t count, unsigned char *rows, message *why) {
   run *r = user;
   const column *outcome = table_column(&r->plan.rows, "outcome");
@@ -122,7 +122,7 @@ static int read_rows(void *user, uint64_t first, uint64_t count, unsigned char *
   return code;
 }
 
-/* A tail of the tasks as the writer asks for it. */
+/* A ragged table for the writer. */
 typedef struct tail_source {
   run *run;
   size_t tail;
@@ -134,7 +134,7 @@ static int read_tail(void *user, uint64_t first, uint64_t count, unsigned char *
   return checkpoint_read_entries(from->run->checkpoint, from->tail, first, count, rows, why);
 }
 
-/* Rows of one integer per tail. */
+/* Rows of one offset per ragged table. */
 static int read_offsets(void *user, uint64_t first, uint64_t count, unsigned char *rows, message *why) {
   run *r = user;
   const size_t tails = r->plan.tail_count;
@@ -164,7 +164,7 @@ static int read_extra(void *user, uint64_t first, uint64_t count, unsigned char 
   return 0;
 }
 
-static int still_ours(void *user, message *why) {
+static int check_lock(void *user, message *why) {
   const run *r = user;
   return lock_check(r->output.lock, why);
 }
@@ -209,7 +209,7 @@ static int write_result(run *r, message *why) {
   result_table tables[2 + KIND_MOST_TAILS + KIND_MOST_EXTRAS];
   tail_source tails[KIND_MOST_TAILS];
   size_t count = list_tables(r, tables, tails);
-  return result_write(r->output.path, &header, tables, count, still_ours, r, why);
+  return result_write(r->output.path, &header, tables, count, check_lock, r, why);
 }
 
 static int poll_stop(void *user) {
@@ -218,7 +218,7 @@ static int poll_stop(void *user) {
   return stop_asked() != STOP_NONE;
 }
 
-/* Every rank has counted for itself: the file is laid out by what rank 0 found. */
+/* Every rank has counted the entries; the file is laid out for the numbers of rank 0. */
 static int agree_on_entries(run *r, message *why) {
   uint64_t first[KIND_MOST_TAILS] = {0};
   int code = 0;
@@ -228,7 +228,7 @@ static int agree_on_entries(run *r, message *why) {
   for (size_t k = 0; !code && k < r->plan.tail_count; k++)
     if (first[k] != checkpoint_entries(r->checkpoint, k))
       code = refuse(why, EXIT_FILES,
-                    "%s: rank %d finds %llu records of %s, rank 0 %llu: is the folder shared by all nodes?",
+                    "%s: rank %d found %llu records of %s, rank 0 %llu: is the folder shared by all nodes?",
                     r->output.folder, ranks_rank(), (unsigned long long)checkpoint_entries(r->checkpoint, k),
                     r->plan.tails[k].records.row_axis, (unsigned long long)first[k]);
   return ranks_agree(code, why);
@@ -271,7 +271,7 @@ static void print_summary(const run *r) {
   printf(" -> %s (%.3g s computing, %.3g s in all)\n", r->output.path, r->computed.seconds, clock_seconds() - r->began);
 }
 
-/* Whether the checkpoint holds nothing that a later run could use. When in doubt it does. */
+/* Whether the checkpoint has no finished tasks; false if that cannot be determined. */
 static bool is_useless(run *r) {
   message ignored;
   bool useless =
@@ -285,7 +285,7 @@ static int compute_and_write(run *r, message *why) {
   return code ? code : assemble(r, why);
 }
 
-static void say_how_it_ended(const run *r) {
+static void print_end(const run *r) {
   if (ranks_rank() != 0)
     return;
   if (r->finished)
@@ -303,16 +303,16 @@ static int run_study(run *r, message *why) {
   code = open_checkpoint(r, why);
   if (!code && !r->finished)
     code = compute_and_write(r, why);
-  ranks_barrier(); /* nobody appends any more */
+  ranks_barrier(); /* no rank appends any more */
   bool useless = is_useless(r);
   checkpoint_close(&r->checkpoint);
   output_release(&r->output, code == 0 || useless);
   if (!code)
-    say_how_it_ended(r);
+    print_end(r);
   return code;
 }
 
-/* The command line as typed, words joined by spaces. */
+/* The command line, words joined by spaces. */
 static char *join_words(int argc, char **argv) {
   size_t size = sizeof "ricochet";
   for (int i = 0; i < argc; i++)
@@ -326,8 +326,8 @@ static char *join_words(int argc, char **argv) {
   return line;
 }
 
-/* Starts MPI where it is due, also when the options were refused with `code`: one rank then says so for all.
- * @param speaks  whether this process prints messages */
+/* Starts MPI if the launcher or --mpi asks for it, also if the options were refused with `code`: then one rank prints
+ * the message. @param speaks  whether this process prints messages */
 static int start(run *r, int *argc, char ***argv, int code, bool *speaks, message *why) {
   launcher_decision launched;
   message refused;
@@ -347,7 +347,7 @@ static int start(run *r, int *argc, char ***argv, int code, bool *speaks, messag
 int command_run(int argc, char **argv) {
   run r = {0};
   message why;
-  r.command = join_words(argc, argv); /* before the options are sorted */
+  r.command = join_words(argc, argv); /* before getopt reorders the words */
   int code = r.command ? run_options_parse(argc, argv, &r.options, &why)
                        : refuse(&why, EXIT_RUN, "no memory for the command line");
   if (!code && r.options.help) {
@@ -361,7 +361,7 @@ int command_run(int argc, char **argv) {
   if (!code)
     code = run_study(&r, &why);
   if (code && speaks)
-    complain(code, &why); /* before a rank leaves with its code: mpirun then ends the others at once */
+    complain(code, &why); /* before a rank exits with its code: mpirun then ends the others at once */
   ranks_finish();
   study_destroy(&r.study);
   for (size_t k = 0; k < KIND_MOST_EXTRAS; k++)

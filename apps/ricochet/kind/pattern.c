@@ -29,8 +29,8 @@ ric_status pattern_read(const study_values *v, ric_pattern **pattern, ric_error 
 
 /* --- the model --- */
 
-/* Keys that closed forms need at their default: those of linear chains without damping, with rigid floors of
- * restitution 1; and whether motions found by shooting do, too. */
+/* Keys that must have their default for closed forms (linear chains without damping, with rigid floors of restitution
+ * 1), and whether shooting needs the default as well. */
 static const struct {
   study_key key;
   bool shooting;
@@ -82,7 +82,7 @@ static int compare_impacts(const void *left, const void *right) {
   return a->item < b->item ? -1 : a->item > b->item;
 }
 
-/* Checks the elements of one list that no sweep moves, and appends them to the impacts. */
+/* Checks the elements of one list that are not swept, and appends them to the impacts. */
 static int collect_impacts(const study *s, const document *d, study_key key, impact *impacts, size_t *count,
                            message *why) {
   const typed_value *list = study_value(s, key);

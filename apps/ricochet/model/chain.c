@@ -1,5 +1,5 @@
-/* model.type: chain, particles on springs of their own that springs couple to their neighbours; and the linear chain
- * without damping, of which orbits have closed forms. */
+/* model.type: chain, particles on on-site springs, coupled to their neighbours by springs; and the linear chain without
+ * damping, whose orbits have closed forms. */
 #include "chain.h"
 
 #include <stdlib.h>

@@ -1,5 +1,5 @@
-/* model.type: duffing_chain, particles in series: a lattice without on-site springs between two walls, from the second
- * of which it is loose. */
+/* model.type: duffing_chain, particles in series: a lattice with fixed ends and without on-site springs, whose last
+ * link has no stiffness. */
 #include "lattice_model.h"
 
 static void read_springs(lattice_model *m, const study_values *v) {

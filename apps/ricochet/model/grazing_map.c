@@ -1,10 +1,10 @@
-/* model.type: grazing_map, the return map beside a grazing motion: given by its lists, or the example of [FN97], of
- * three numbers. */
+/* model.type: grazing_map, the return map near a grazing motion: given by its lists, or the example (6.1)-(6.5) of
+ * [FN97]. */
 #include "grazing_map.h"
 
 #include <math.h>
 
-/* A list of the study; where it is empty, the zeros stay. */
+/* Copies a list of the study; an empty one leaves zeros. */
 static void read_list(double *to, const study_values *v, study_key key) {
   for (size_t i = 0; i < value_count(v, key); i++)
     to[i] = value_number(v, key, i);
@@ -57,8 +57,7 @@ static int check_lists(const study *s, const document *d, message *why) {
   for (size_t i = 0; i < 2; i++)
     if (study_has(s, alone[i]))
       return document_refuse(d, check_node_of_key(s, alone[i]), why,
-                             "%s is of the example map, and model.L gives another one: expected one of the two",
-                             alone[i]->path);
+                             "%s and model.L both give the map, expected one of the two", alone[i]->path);
   if (n == 0)
     return document_refuse(d, study_value(s, KEY_MODEL_L)->node, why,
                            "model.eta is empty, expected the vector of the map");

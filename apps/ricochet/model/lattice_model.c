@@ -64,7 +64,7 @@ static void read_force(lattice_model *m, const study_values *v) {
   m->lattice.force_sin = any ? m->force_sin : NULL;
 }
 
-/* The obstacles of one side; null stands for none. */
+/* The obstacles of one side; null means none. */
 static void add_obstacles(lattice_model *m, const study_values *v, study_key key, int side) {
   const double hertz = value_number(v, KEY_MODEL_HERTZ, 0);
   for (size_t i = 0; i < m->lattice.particles; i++) {

@@ -59,7 +59,7 @@ int attribute_put_text(const file_place *at, hid_t object, const char *name, con
   hid_t type = H5I_INVALID_HID;
   if (!text)
     text = "";
-  size_t bytes = text[0] ? strlen(text) : 1; /* HDF5 has no text of length 0: one NUL stands for it */
+  size_t bytes = text[0] ? strlen(text) : 1; /* HDF5 has no text of length 0: it is stored as one NUL */
   HDF5_TRY(at, type = attribute_text_type(bytes, character_set(text)), "describe the attribute %s", name);
   code = put_scalar(at, object, name, type, type, text);
 out:
@@ -97,7 +97,7 @@ int attribute_text(const file_place *at, hid_t object, const char *name, char **
   HDF5_TRY(at, type = H5Aget_type(attribute), "read the attribute %s", name);
   HDF5_TRY(at, space = H5Aget_space(attribute), "read the attribute %s", name);
   if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) != 0 || H5Sget_simple_extent_npoints(space) != 1) {
-    code = refuse(at->why, EXIT_FILES, "%s: attribute %s is no text of fixed length", at->path, name);
+    code = refuse(at->why, EXIT_FILES, "%s: attribute %s is not text of fixed length", at->path, name);
     goto out;
   }
   *text = calloc(H5Tget_size(type) + 1, 1);
@@ -149,7 +149,7 @@ static int read_scalar(const file_place *at, hid_t object, const char *name, hid
   HDF5_TRY(at, attribute = H5Aopen(object, name, H5P_DEFAULT), "read the attribute %s", name);
   HDF5_TRY(at, space = H5Aget_space(attribute), "read the attribute %s", name);
   if (H5Sget_simple_extent_npoints(space) != 1) {
-    code = refuse(at->why, EXIT_FILES, "%s: attribute %s is no single value", at->path, name);
+    code = refuse(at->why, EXIT_FILES, "%s: attribute %s is not a single value", at->path, name);
     goto out;
   }
   HDF5_TRY(at, H5Aread(attribute, memory_type, value), "read the attribute %s", name);

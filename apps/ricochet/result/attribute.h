@@ -12,7 +12,7 @@ enum { ATTRIBUTE_MOST_COMPACT = 64 };
 
 /* Writing. @returns 0 or EXIT_FILES. */
 
-/** Text of fixed length, which readers cannot trip over; ASCII, or UTF-8 where a byte needs it. NULL counts as "". */
+/** Text of fixed length, which all readers support; ASCII, or UTF-8 if a byte needs it. NULL counts as "". */
 int attribute_put_text(const file_place *at, hid_t object, const char *name, const char *text);
 int attribute_put_integer(const file_place *at, hid_t object, const char *name, int64_t value);
 int attribute_put_number(const file_place *at, hid_t object, const char *name, double value);

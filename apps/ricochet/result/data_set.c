@@ -127,7 +127,7 @@ out:
 
 /* --- columns --- */
 
-/* The names of an enum once more, as the CF conventions have them: for readers that see plain integers. */
+/* The names of an enum as attributes of the CF conventions too, for readers without enums. */
 static int put_flag_meanings(const file_place *at, hid_t set, const column *c) {
   enum { MOST = 128 };
   signed char values[MOST];
@@ -168,7 +168,7 @@ static int describe_column(const file_place *at, hid_t file, hid_t set, const ta
   return code;
 }
 
-/* HDF5's type of sizes is as wide as uint64_t, but not it. */
+/* hsize_t has the width of uint64_t but is another type. */
 static void to_sizes(const uint64_t *values, hsize_t *sizes) {
   for (int i = 0; i < PLAN_MOST_AXES; i++)
     sizes[i] = values[i];

@@ -8,7 +8,7 @@ void hdf5_quiet(void) {
   (void)H5Eset_auto2(H5E_DEFAULT, NULL, NULL); /* fails only on a bad stack, and prints nothing then either */
 }
 
-/* Takes the deepest description that says anything and stops the walk. */
+/* Copies the innermost non-empty description and ends the iteration. */
 static herr_t take_reason(unsigned depth, const H5E_error2_t *error, void *user) {
   message *reason = user;
   (void)depth;

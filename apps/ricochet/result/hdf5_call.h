@@ -1,8 +1,8 @@
-/* Calls to HDF5 and what becomes of their failures: a message for the user instead of HDF5's error stack.
+/* Calls to HDF5 whose failures become a message for the user instead of HDF5's error stack.
  *
  * HDF5 keeps the description of a failure only until its next call, closing a handle included. A failure is therefore
- * turned into a message where it happens, before anything is cleaned up: functions that own handles use HDF5_TRY, whose
- * failure jumps to `out`, where every handle is closed and a failing close counts as well. */
+ * turned into a message where it happens, before any handle is closed: functions that own handles use HDF5_TRY, which
+ * jumps to `out` on failure. There every handle is closed, and a failing close is an error as well. */
 #ifndef RICOCHET_APP_HDF5_CALL_H
 #define RICOCHET_APP_HDF5_CALL_H
 

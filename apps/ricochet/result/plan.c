@@ -127,7 +127,7 @@ int plan_shape(const column *c, uint64_t rows, uint64_t shape[PLAN_MOST_AXES]) {
 
 void plan_chunk(const table *t, const column *c, uint64_t rows, uint64_t chunk[PLAN_MOST_AXES]) {
   uint64_t fit = PLAN_CHUNK_BYTES / column_value_bytes(c);
-  for (int i = column_axes(c) - 1; i >= 0; i--) { /* the last axis first: its values lie side by side */
+  for (int i = column_axes(c) - 1; i >= 0; i--) { /* the last axis first: its values are contiguous */
     uint64_t values = c->extents[i] < fit ? c->extents[i] : fit;
     chunk[1 + i] = values ? values : 1;
     fit /= chunk[1 + i];

@@ -1,15 +1,15 @@
-/* What goes where in a result file, worked out before anything is written: the tables (the caller's and the swept
- * parameters), the axes they share, and how data sets are cut into chunks and rows into blocks.
+/* Layout of a result file, computed before anything is written: the tables (the caller's and the swept parameters), the
+ * axes they share, the chunks of data sets and the blocks of rows.
  *
- * Every rank makes the same plan from the same tables; nothing in it depends on the number of ranks, so neither does
- * the file. */
+ * Every rank makes the same plan from the same tables. The plan, and so the file, does not depend on the number of
+ * ranks. */
 #ifndef RICOCHET_APP_PLAN_H
 #define RICOCHET_APP_PLAN_H
 
 #include "result.h"
 
 enum {
-  PLAN_CHUNK_BYTES = 1 << 20, /* at most so much in a chunk: it fits HDF5's chunk cache of 1 MiB */
+  PLAN_CHUNK_BYTES = 1 << 20, /* limit of a chunk: it fits HDF5's chunk cache of 1 MiB */
   PLAN_BLOCK_BYTES = 4 << 20, /* rows that a rank reads and writes at a time; one row may be longer */
   PLAN_MOST_AXES = 1 + COLUMN_MOST_AXES
 };
@@ -38,7 +38,7 @@ int plan_init(plan *p, const char *path, const result_header *header, const resu
               message *why);
 void plan_clear(plan *p);
 
-/** Bytes that all data sets take in the file at most, chunks, checksums and indices. */
+/** Upper bound of the bytes of all data sets in the file: chunks, checksums and indices. */
 uint64_t plan_bytes(const plan *p);
 
 /** Rows of a block: a power of two, as many as PLAN_BLOCK_BYTES hold but at least one. */
@@ -48,7 +48,7 @@ uint64_t plan_block_rows(const table *t);
 int plan_shape(const column *c, uint64_t rows, uint64_t shape[PLAN_MOST_AXES]);
 
 /** Chunk of a column's data set, along each of its axes at least 1. Its rows divide those of a block (or hold all
- *  rows), so that no two ranks ever touch the same chunk. */
+ *  rows), so no two ranks write the same chunk. */
 void plan_chunk(const table *t, const column *c, uint64_t rows, uint64_t chunk[PLAN_MOST_AXES]);
 
 #endif

@@ -21,7 +21,7 @@ static int check_creator(const file_place *at, hid_t file) {
   if (code)
     return code;
   if (strcmp(creator, RESULT_CREATOR) != 0)
-    return refuse(at->why, EXIT_FILES, "%s: no result of ricochet (attribute creator = \"%s\")", at->path, creator);
+    return refuse(at->why, EXIT_FILES, "%s: not a result of ricochet (attribute creator = \"%s\")", at->path, creator);
   code = attribute_integer(at, file, "schema_version", &version);
   if (!code && (version < 1 || version > RESULT_SCHEMA_VERSION))
     code = refuse(at->why, EXIT_FILES, "%s: schema_version = %lld, this program reads 1 to %d", at->path,
@@ -45,10 +45,10 @@ int reader_open(const file_place *at, const char *path, reader_handle *file) {
   if (stat(path, &about) != 0)
     return refuse(at->why, EXIT_FILES, "%s: cannot open it: %s", at->path, strerror(errno));
   if (!S_ISREG(about.st_mode))
-    return refuse(at->why, EXIT_FILES, "%s: no regular file", at->path);
+    return refuse(at->why, EXIT_FILES, "%s: not a regular file", at->path);
   HDF5_TRY(at, known = H5Fis_hdf5(path), "open it");
   if (!known)
-    return refuse(at->why, EXIT_FILES, "%s: no HDF5 file, or its beginning is damaged", at->path);
+    return refuse(at->why, EXIT_FILES, "%s: not an HDF5 file, or its beginning is damaged", at->path);
   HDF5_TRY(at, *file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT), "open it");
   code = check_creator(at, *file);
   if (code) {

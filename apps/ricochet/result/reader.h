@@ -1,6 +1,7 @@
-/* A result read back: its groups, their data sets with what describes them, and rows of values as text.
+/* Reading a result: its groups, their data sets with their attributes, and rows of values as text.
  *
- * Serial, for any process, without MPI. Nothing is trusted: files may be cut short, damaged, or of another program. */
+ * Serial, for any process, without MPI. Files may be truncated, damaged, or of another program; all of it is checked.
+ */
 #ifndef RICOCHET_APP_READER_H
 #define RICOCHET_APP_READER_H
 
@@ -13,7 +14,7 @@
 /** HDF5's hid_t, so that kinds can read their results without HDF5. */
 typedef int64_t reader_handle;
 
-/** Opens a result for reading. @returns 0, or EXIT_FILES when it is none, of a later schema, or cut short. */
+/** Opens a result for reading. @returns 0, or EXIT_FILES if it is not a result, of a later schema, or truncated. */
 int reader_open(const file_place *at, const char *path, reader_handle *file);
 /** @param code  of the work done with it  @returns `code`, or EXIT_FILES when only the close failed */
 int reader_close(const file_place *at, reader_handle file, int code);
@@ -77,7 +78,7 @@ int reader_rows(const file_place *at, const reader_set *s, uint64_t first, uint6
  *  @param values  [shape[1]][value_bytes] */
 int reader_row(const file_place *at, const reader_set *s, uint64_t row, unsigned char *values);
 
-/** Numbers that a value of the set consists of: real and imaginary part of a complex one, else 1. */
+/** Numbers per value of the set: 2 of complex ones (real and imaginary part), else 1. */
 int reader_parts(const reader_set *s);
 
 /** Name of a part: that of the set, or "multiplier.r" and "multiplier.i". */

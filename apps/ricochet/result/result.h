@@ -1,13 +1,13 @@
 /* Result files: HDF5, written by all ranks under a temporary name, verified, renamed; and read back for `show`.
  *
  * Every data set is chunked with the fletcher32 checksum, the file is of the HDF5 1.10 format throughout (metadata have
- * checksums), strings are of fixed length, every axis is attached to a dimension scale in the root group, and carries
- * its names once more as text in the attribute `axes`. Everything that varies between runs sits in /run, but for the
- * root attributes `file_time` and `command`. h5py reads it, and xarray group by group, with no option and no helper;
- * units are those of science ("s"), for xarray turns "seconds" into dates.
+ * checksums), strings are of fixed length, every axis is attached to a dimension scale in the root group, and every
+ * data set repeats the names of its axes as text in the attribute `axes`. Everything that varies between runs is in
+ * /run, except the root attributes `file_time` and `command`. h5py reads the file, and xarray group by group, without
+ * options; units are abbreviated ("s"), because xarray turns "seconds" into dates.
  *
- * Who does what: plan.h cuts the tables into chunks and blocks, skeleton.h makes all metadata in memory, it puts
- * them on the disk with space for all rows, rows.h has every rank write its blocks, verify.h reads them back. */
+ * plan.h divides the tables into chunks and blocks. skeleton.h makes all metadata in memory and creates the file with
+ * space for all rows. In writer.c every rank writes its blocks. verify.h reads them back. */
 #ifndef RICOCHET_APP_RESULT_H
 #define RICOCHET_APP_RESULT_H
 
@@ -19,11 +19,11 @@
 #include "../base/table.h"
 #include "reader.h"
 
-#define RESULT_CREATOR "ricochet" /* root attribute `creator`: the file is ours */
+#define RESULT_CREATOR "ricochet" /* root attribute `creator` of every result */
 enum { RESULT_SCHEMA_VERSION = 1 };
 
-/** Rows [first, first + count) of a table, as table.h lays them out. Each rank asks for other rows, at its own pace: no
- *  collective operation may hide in here.
+/** Rows [first, first + count) of a table, as table.h lays them out. Each rank requests other rows, at its own
+ *  pace: collective operations are not allowed in here.
  *  @param rows  [count][row_bytes], to be filled
  *  @returns 0 or an exit code, with its reason in `why` */
 typedef int (*result_rows)(void *user, uint64_t first, uint64_t count, unsigned char *rows, message *why);
@@ -37,7 +37,7 @@ typedef struct result_table {
   void *user;
 } result_table;
 
-/** What is written besides the tables. Strings are borrowed. */
+/** The attributes of a result. Strings are borrowed. */
 typedef struct result_header {
   const study *study;
   const char *command;   /* the command line */
@@ -56,8 +56,8 @@ typedef struct result_header {
  *  renames it to `path` and syncs the folder. On any failure the temporary file is removed and all ranks return the
  * same code with the same message, that of the lowest rank that failed.
  *
- *  SIGXFSZ is to be ignored by then: a limit on the size of files is a failure like any other.
- *  @param commit  asked on rank 0 just before the rename (the lock is still ours?); 0 agrees; NULL always does
+ *  The process must ignore SIGXFSZ: then a limit on the size of files gives an error like any other.
+ *  @param commit  called on rank 0 just before the rename (does this run still hold the lock?); 0: yes; NULL: always
  *  @returns 0; EXIT_FILES when it cannot be written; EXIT_RUN when tables contradict each other or memory runs out;
  * what `read` or `commit` returned */
 int result_write(const char *path, const result_header *header, const result_table *tables, size_t table_count,
@@ -65,17 +65,17 @@ int result_write(const char *path, const result_header *header, const result_tab
 
 /** Reads every data set of the file through its checksums, and checks the study's text and the references to the axes,
  *  on this process alone, without MPI_Init.
- *  @returns 0 or EXIT_FILES naming what is damaged, also when `path` is no file of ours. */
+ *  @returns 0 or EXIT_FILES naming what is damaged, also if `path` is not a result of this program. */
 int result_verify(const char *path, message *why);
 
 /** Digest of the study that a result belongs to (root attribute `study_digest`).
- *  @returns 0, or EXIT_FILES when it is no result of this program. */
+ *  @returns 0, or EXIT_FILES if it is not a result of this program. */
 int result_study_digest(const char *path, uint64_t *digest, message *why);
 
-/* What `show` prints on standard output, on this process alone, without MPI_Init. @returns 0; EXIT_FILES when the file
- * is damaged or not ours, or the output cannot be written. */
+/* What `show` prints on standard output, on this process alone, without MPI_Init. @returns 0; EXIT_FILES if the file
+ * is damaged or not a result, or the output cannot be written. */
 
-/** What a kind says of its results in sentences. @returns 0, EXIT_FILES or EXIT_RUN */
+/** Prints what a kind reports about a result, in sentences. @returns 0, EXIT_FILES or EXIT_RUN */
 typedef int result_card(const file_place *at, reader_handle file);
 
 /** Prints what is in the file: creator, study title, sweeps with their ranges, the cards of its groups, every group

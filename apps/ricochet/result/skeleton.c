@@ -108,7 +108,7 @@ static int put_root(const file_place *at, hid_t file, const result_header *heade
   return code;
 }
 
-/* Everything that differs between two runs of the same study sits here, and only here (but for file_time, command). */
+/* Everything that differs between two runs of one study is here, except the attributes file_time and command. */
 static int put_run(const file_place *at, hid_t file, const result_header *header) {
   char host[256] = "unknown", started[32];
   hid_t group = H5I_INVALID_HID;
@@ -146,8 +146,8 @@ static int fill(const file_place *at, hid_t file, const plan *p) {
   return code ? code : put_run(at, file, p->header);
 }
 
-/* The file in memory: HDF5's memory driver asks these for its memory, so that the bytes outlive the closing of the
- * file. (H5Fget_file_image, of a file still open, gives a superblock whose checksum is wrong.) */
+/* The file in memory: HDF5's memory driver allocates by these callbacks, so that the bytes remain after the file is
+ * closed. (H5Fget_file_image, of a file still open, gives a superblock whose checksum is wrong.) */
 
 static void *image_resize(void *bytes, size_t size, H5FD_file_image_op_t op, void *user) {
   skeleton_image *image = user;
@@ -229,7 +229,9 @@ static int reserve(int handle, uint64_t bytes) {
   do
     failed = posix_fallocate(handle, 0, (off_t)bytes);
   while (failed == EINTR);
-  return failed == EINVAL || failed == EOPNOTSUPP ? 0 : failed; /* a file system that cannot reserve: hope */
+  return failed == EINVAL || failed == EOPNOTSUPP
+             ? 0
+             : failed; /* a file system without reservation: the write may fail later */
 }
 
 static int write_image(const plan *p, const file_place *at, const skeleton_image *image) {
@@ -250,7 +252,7 @@ static int write_image(const plan *p, const file_place *at, const skeleton_image
 
 /* --- layout of the chunks --- */
 
-/* The first write to a data set lays all its chunks out; one value is enough. */
+/* The first write to a data set allocates all its chunks; one value is enough. */
 static int touch(const file_place *at, hid_t file, const table *t, const column *c) {
   int code = 0;
   hid_t set = H5I_INVALID_HID, in_file = H5I_INVALID_HID, in_memory = H5I_INVALID_HID, type = H5I_INVALID_HID;

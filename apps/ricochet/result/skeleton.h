@@ -21,11 +21,11 @@ hid_t skeleton_access(void);
 
 /* The result file on the disk before its rows are written: skeleton, and space for everything.
  *
- * HDF5 does not survive a disk that fills up under it: a close that cannot flush leaves a broken handle behind, which
- * crashes the process when MPI_Finalize shuts HDF5 down, and in parallel the other ranks wait for ever. So HDF5 never
- * meets that disk: the skeleton is made in memory and written like any bytes, and the file system is asked to reserve
- * all the space there will ever be. A full disk, a quota or a limit on the file's size shows there, in calls that fail
- * cleanly. Then HDF5 lays all chunks out, so that ranks writing rows only overwrite bytes and change no metadata. */
+ * HDF5 fails badly on a full disk: a close that cannot flush leaves a broken handle, which crashes the process when
+ * MPI_Finalize shuts HDF5 down, and in parallel the other ranks wait forever. HDF5 therefore never allocates space on
+ * the disk: the skeleton is made in memory and written as plain bytes, and the file system reserves all the space of
+ * the result. A full disk, a quota or a limit on the file's size appears there, in calls that fail cleanly. Then HDF5
+ * allocates all chunks, so that ranks only overwrite bytes of rows and change no metadata. */
 
 /** Creates `p->partial` on this process alone, all data sets laid out and filled with zeros. */
 int space_create(const plan *p, const file_place *at);

@@ -24,8 +24,8 @@ static int64_t digest_of(const unsigned char *bytes, size_t count) {
   return (int64_t)digest_bytes(0, bytes, count);
 }
 
-/* Signature, version 1, three zero bytes, size of the whole collection. Data that happen to look like it do no harm:
- * nothing in the skeleton changes any more, so their checksum holds as well. */
+/* Signature, version 1, three zero bytes, size of the whole collection. Other data with this signature do no
+ * harm: the skeleton does not change any more, so their checksum stays correct as well. */
 static bool heap_at(const skeleton_image *image, size_t address, heap *found) {
   static const unsigned char lead[8] = {'G', 'C', 'O', 'L', 1, 0, 0, 0};
   const unsigned char *bytes = image->bytes + address;
@@ -135,7 +135,7 @@ static herr_t read_values(hid_t attribute, hid_t type) {
   return status;
 }
 
-static herr_t look_at_attribute(hid_t object, const char *name, const H5A_info_t *info, void *user) {
+static herr_t visit_attribute(hid_t object, const char *name, const H5A_info_t *info, void *user) {
   (void)info;
   (void)user;
   hid_t attribute = H5Aopen(object, name, H5P_DEFAULT), type = attribute < 0 ? -1 : H5Aget_type(attribute);
@@ -150,30 +150,30 @@ static herr_t look_at_attribute(hid_t object, const char *name, const H5A_info_t
   return status < 0 ? -1 : 0;
 }
 
-static herr_t look_at_object(hid_t root, const char *name, const H5O_info_t *info, void *user) {
+static herr_t visit_object(hid_t root, const char *name, const H5O_info_t *info, void *user) {
   (void)info;
   hid_t object = H5Oopen(root, name, H5P_DEFAULT);
   if (object < 0)
     return -1;
-  herr_t status = H5Aiterate2(object, H5_INDEX_NAME, H5_ITER_NATIVE, NULL, look_at_attribute, user);
+  herr_t status = H5Aiterate2(object, H5_INDEX_NAME, H5_ITER_NATIVE, NULL, visit_attribute, user);
   if (H5Oclose(object) < 0)
     status = -1;
   return status < 0 ? -1 : 0;
 }
 
-/* Visits all groups, data sets and named types and reads their attributes, so that HDF5 looks at the checksums of all
- * metadata, also of parts that nobody asks for. Attributes with references are left to who checks the axes. */
+/* Visits all groups, data sets and named types and reads their attributes, so that HDF5 verifies the checksums of all
+ * metadata. Attributes with references are verified by check_axes. */
 static int objects_check(const file_place *at, hid_t file) {
-  herr_t status = H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_NATIVE, look_at_object, NULL, H5O_INFO_ALL);
+  herr_t status = H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_NATIVE, visit_object, NULL, H5O_INFO_ALL);
   return status < 0 ? hdf5_refuse(at, "read all of it") : 0;
 }
 
-/* One verification under way. */
+/* A verification in progress. */
 typedef struct verifier {
   const file_place *at;
   hid_t file;
   int part, parts;
-  uint64_t turn; /* slabs seen so far; every parts-th is ours */
+  uint64_t turn; /* slabs counted so far; this process reads every parts-th */
 } verifier;
 
 /* --- data --- */
@@ -217,7 +217,7 @@ static int read_slabs(verifier *v, const char *name, const slabs *s) {
 
 /* --- how a data set is stored --- */
 
-/* Chunks with the checksum, without which reading would prove nothing; sets the height of a slab. */
+/* Requires chunks with a checksum, without which reading verifies nothing; sets the height of a slab. */
 static int check_storage(const verifier *v, const char *name, slabs *s) {
   int code = 0;
   hsize_t chunk[H5S_MAX_RANK];
@@ -236,7 +236,7 @@ out:
   return hdf5_close(v->at, list, code);
 }
 
-/* Every axis hangs on the scale that the attribute `axes` names; a scale is its own axis. */
+/* Every axis is attached to the scale that the attribute `axes` names; a scale is its own axis. */
 static int check_axes(const verifier *v, const char *name, const slabs *s) {
   char axes[256], *rest = axes;
   hid_t scale = H5I_INVALID_HID;
@@ -257,7 +257,7 @@ static int check_axes(const verifier *v, const char *name, const slabs *s) {
     scale = H5I_INVALID_HID;
   }
   if (!code && !good)
-    code = refuse(v->at->why, EXIT_FILES, "%s: an axis of %s has lost its scale", v->at->path, name);
+    code = refuse(v->at->why, EXIT_FILES, "%s: an axis of %s is not attached to its scale", v->at->path, name);
 out:
   return hdf5_close(v->at, scale, code);
 }
@@ -314,7 +314,7 @@ static int check_study(const verifier *v) {
   return code;
 }
 
-/* --- what was to be written --- */
+/* --- comparison with the plan --- */
 
 static int check_shape(const verifier *v, const char *group, const char *name, int rank, const hsize_t *expected) {
   int code = 0;

@@ -9,15 +9,15 @@
  *  checks all metadata (data sets chunked with a checksum, every axis attached to its scale) and reads every
  *  `parts`-th slab of data.
  *  @param path  of the file to open; `at` names the one for messages
- *  @param expected  what the file must hold at least, by name and shape; NULL when nothing is known about it */
+ *  @param expected  what the file must hold at least, by name and shape; NULL if unknown */
 int verify_part(const file_place *at, const char *path, const plan *expected, int part, int parts);
 
-/* Checksums for the one part of a result to which HDF5 gives none: its global heaps.
+/* Checksums of the global heaps, the only data of a result for which HDF5 has none.
  *
- * They hold the references from data sets to the scales of their axes, and HDF5 1.10 loops for ever when it reads a
- * heap with a damaged object size. The writer finds the heaps (collections of bytes that begin with "GCOL") in the
- * finished skeleton and stores where they are, with a digest of each, in the root attribute `heap_checksums`, int64
- * [heaps][3]: address, size, FNV-1a of the bytes. A reader compares them before it asks HDF5 for anything in there. */
+ * They hold the references from data sets to the scales of their axes. HDF5 1.10 loops forever when it reads a heap
+ * with a damaged object size. The writer finds the heaps (collections of bytes that begin with "GCOL") in the
+ * finished skeleton and stores, in the root attribute `heap_checksums`, int64 [heaps][3], the address, the size and
+ * the FNV-1a digest of each. A reader compares these before HDF5 reads a heap. */
 
 /** Stores the checksums of the heaps in `image` in the file that was made of it. */
 int heap_put_checksums(const file_place *at, hid_t file, const skeleton_image *image);

@@ -17,7 +17,7 @@
 
 /* --- rows --- */
 
-/* A table on its way to the file: its data sets, and one block of rows. */
+/* A table that is written: its data sets, and one block of rows. */
 typedef struct table_writer {
   const file_place *at;
   const result_table *from;
@@ -122,9 +122,9 @@ static int write_table(const file_place *at, hid_t file, const result_table *fro
 }
 
 /* Every rank opens the file for itself, with the MPI-IO driver over itself alone. With all ranks in one communicator
- * HDF5 1.10 and MPI-IO hang for good when a write fails on one of them; with the default driver a file is open for
- * writing once only. No rank sees what another changes, which is sound because none changes metadata, and blocks never
- * share a chunk. Without MPI there is one process, and the default driver serves. */
+ * HDF5 1.10 and MPI-IO hang if a write fails on one of them; with the default driver only one process can open a file
+ * for writing. No rank reads what another writes: none changes metadata, and blocks never share a chunk. Without MPI
+ * there is one process, which uses the default driver. */
 static int rows_write(const plan *p, const file_place *at, int rank, int ranks) {
   int code = 0;
   hid_t access = H5I_INVALID_HID, file = H5I_INVALID_HID;
@@ -135,7 +135,7 @@ static int rows_write(const plan *p, const file_place *at, int rank, int ranks) 
   for (size_t i = 0; !code && i < p->table_count; i++)
     code = write_table(at, file, &p->tables[i], rank, ranks);
   if (!code)
-    HDF5_TRY(at, H5Fflush(file, H5F_SCOPE_GLOBAL), "write it"); /* syncs: the other ranks' nodes see it from now on */
+    HDF5_TRY(at, H5Fflush(file, H5F_SCOPE_GLOBAL), "write it"); /* syncs: other nodes can read the rows after this */
 out:
   code = hdf5_close(at, file, code);
   return hdf5_close(at, access, code);
@@ -146,8 +146,8 @@ typedef struct writer {
   file_place at;
 } writer;
 
-/* Collective: each rank looks whether it has the file that rank 0 made. */
-static int file_in_sight(const writer *w) {
+/* Collective: each rank checks that it can open the file that rank 0 made. */
+static int check_shared_file(const writer *w) {
   struct stat mine;
   long long size = -1;
   int handle = open(w->plan.partial, O_RDWR);
@@ -161,8 +161,9 @@ static int file_in_sight(const writer *w) {
   if (failed)
     return refuse(w->at.why, EXIT_FILES, "%s: rank %d cannot open it: %s", w->at.path, ranks_rank(), strerror(failed));
   if (size != first)
-    return refuse(w->at.why, EXIT_FILES, "%s: rank %d sees %lld bytes, rank 0 %lld: is the folder shared by all nodes?",
-                  w->at.path, ranks_rank(), size, first);
+    return refuse(w->at.why, EXIT_FILES,
+                  "%s: %lld bytes on rank %d, %lld on rank 0: is the folder shared by all nodes?", w->at.path, size,
+                  ranks_rank(), first);
   return 0;
 }
 
@@ -190,7 +191,7 @@ static int sync_folder(const writer *w) {
   return code;
 }
 
-/* Rank 0: the verified file gets its name, after its bytes and before its folder are safe on the disk. */
+/* Rank 0: syncs the verified file, renames it, and syncs the folder. */
 static int publish(const writer *w, int (*commit)(void *user, message *why), void *user) {
   int code = sync_at(w, w->plan.partial);
   if (!code && commit)
@@ -209,7 +210,7 @@ int result_write(const char *path, const result_header *header, const result_tab
   if (!code)
     code = ranks_agree(rank == 0 ? space_create(&w.plan, &w.at) : 0, why);
   if (!code)
-    code = ranks_agree(file_in_sight(&w), why);
+    code = ranks_agree(check_shared_file(&w), why);
   if (!code)
     code = ranks_agree(rows_write(&w.plan, &w.at, rank, ranks), why);
   if (!code)
@@ -217,7 +218,7 @@ int result_write(const char *path, const result_header *header, const result_tab
   if (!code)
     code = ranks_agree(rank == 0 ? publish(&w, commit, user) : 0, why);
   if (code && rank == 0 && w.plan.partial)
-    unlink(w.plan.partial); /* absent when it failed before there was one */
+    unlink(w.plan.partial); /* absent if it was not yet created */
   plan_clear(&w.plan);
   return code;
 }

@@ -48,7 +48,7 @@ static int set_identity(checkpoint *c, const char *folder, const checkpoint_iden
     c->tails++;
   smallest += c->tails * sizeof(uint64_t);
   if (!(identity->row_bytes >= 1) || identity->tasks > (UINT64_MAX - sizeof(uint64_t)) / smallest)
-    return refuse(why, EXIT_RUN, "%s: %llu tasks with rows of %llu bytes have no checkpoint", folder,
+    return refuse(why, EXIT_RUN, "%s: %llu tasks with rows of %llu bytes exceed the size of a checkpoint", folder,
                   (unsigned long long)identity->tasks, (unsigned long long)identity->row_bytes);
   const int length = snprintf(c->folder, sizeof c->folder, "%s", folder);
   if (length < 0 || (size_t)length >= sizeof c->folder)
@@ -58,7 +58,7 @@ static int set_identity(checkpoint *c, const char *folder, const checkpoint_iden
   c->identity.row_bytes = identity->row_bytes;
   for (size_t i = 0; i < c->tails; i++)
     c->identity.entry_bytes[i] = identity->entry_bytes[i];
-  /* What stands behind the end of the caller's string must not count as a difference. */
+  /* Copied as a string: bytes after its end must not make a difference. */
   snprintf(c->identity.version, sizeof c->identity.version, "%.63s", identity->version);
   return 0;
 }
@@ -119,7 +119,7 @@ uint64_t checkpoint_missing(const checkpoint *c, uint64_t n, uint64_t *task) {
   return gap->count - skipped;
 }
 
-/* Leaves out what has been written already. */
+/* Advances the pieces past the bytes already written. */
 static void advance(struct iovec *pieces, int count, size_t written) {
   for (int i = 0; i < count; i++) {
     const size_t step = written < pieces[i].iov_len ? written : pieces[i].iov_len;
@@ -129,8 +129,8 @@ static void advance(struct iovec *pieces, int count, size_t written) {
   }
 }
 
-/* Writes all of the pieces at the end of this rank's file, or nothing: after a failure it is cut back to its last good
- * record. If not even that can be done the file is given up, as records after a torn one would never be read. */
+/* Appends all pieces to this rank's file, or none: after a failure the file is truncated to its last good record. If
+ * that fails too, the file is closed, because records after an incomplete one are never read. */
 static int append_pieces(checkpoint *c, struct iovec *pieces, int count, message *why) {
   size_t left = 0;
   for (int i = 0; i < count; i++)
@@ -159,7 +159,7 @@ static int append_pieces(checkpoint *c, struct iovec *pieces, int count, message
 
 int checkpoint_begin(checkpoint *c, int rank, message *why) {
   part_path(c->folder, c->generation, (unsigned)rank, c->own_path);
-  /* O_EXCL: a file of this name would be that of another run, which the lock should have kept away. */
+  /* O_EXCL: a file of this name would belong to another run, which the lock excludes. */
   c->own_fd = open(c->own_path, O_CREAT | O_EXCL | O_WRONLY | O_APPEND | O_CLOEXEC, 0666);
   if (c->own_fd < 0)
     return refuse_part(c->own_path, "create", why);
@@ -220,8 +220,8 @@ int checkpoint_append(checkpoint *c, uint64_t first, uint64_t count, const void 
   return append_pieces(c, pieces, piece_count, why);
 }
 
-/* Some file systems cannot sync folders (EINVAL), and a parent may be closed to reading (EACCES): both leave the folder
- * to the system's own pace, which is no reason to stop a run. */
+/* Some file systems cannot sync folders (EINVAL), and a parent may be closed to reading (EACCES): in both
+ * cases the system writes the folder later, and the run goes on. */
 static int sync_folder(const char *path, message *why) {
   const int fd = open(path, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   int code = 0;

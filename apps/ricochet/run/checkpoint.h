@@ -1,14 +1,15 @@
 /* The checkpoint of a run: a folder with one file per rank, to which the rank appends its finished chunks.
  *
- * A record is (magic, first task, number of tasks, bytes, digests) and the rows; it is never rewritten. Where tasks
- * have tails (so many entries each, of a fixed size, behind their rows), the numbers of entries of every task stand
- * before the rows, under a digest of their own, and the entries behind them, tail by tail. Reading goes to the first
- * record of a file that does not verify. A run that resumes opens new files beside the old ones, so that a torn tail is
- * never written over. The rows of finished tasks are read back from here when the result is assembled: no rank holds
- * more than it is working on. What is kept in memory is 32 bytes per record, and 8 per record and tail.
+ * A record is (magic, first task, number of tasks, bytes, digests) and the rows; it is never rewritten. A study may
+ * have ragged tables (`tails`: each task has any number of entries of a fixed size). Then a record also holds the
+ * number of entries of every task, with a digest of its own, before the rows, and the entries after them, table by
+ * table. A file is read up to the first record that does not verify. A resumed run opens new files, so an incomplete
+ * record at the end of an old file is never overwritten. When the result is assembled, the rows of finished tasks are
+ * read from here: a rank holds only the tasks that it computes. Memory: 32 bytes per record, and 8 per record and
+ * ragged table.
  *
- * The ranks share nothing but the files. They number the missing tasks alike because they open the checkpoint before
- * any of them appends (a barrier between), and they read each other's rows after a barrier and a rescan. */
+ * The ranks share the files only. All number the missing tasks identically, because all open the checkpoint before any
+ * of them appends (a barrier is between). They read the rows of other ranks after a barrier and a rescan. */
 #ifndef RICOCHET_APP_CHECKPOINT_H
 #define RICOCHET_APP_CHECKPOINT_H
 
@@ -22,19 +23,19 @@ typedef struct checkpoint checkpoint;
 
 enum { CHECKPOINT_MOST_TAILS = 6 };
 
-/** What a checkpoint belongs to; every file begins with it. */
+/** The study and program that a checkpoint belongs to; every file begins with it. */
 typedef struct checkpoint_identity {
   uint64_t digest; /* of the study */
   uint64_t tasks;
   uint64_t row_bytes;                          /* >= 1 */
-  uint64_t entry_bytes[CHECKPOINT_MOST_TAILS]; /* of each tail; 0 behind the last one */
+  uint64_t entry_bytes[CHECKPOINT_MOST_TAILS]; /* of each ragged table; 0 after the last one */
   char version[64];                            /* of the program: rows of different versions are not mixed */
 } checkpoint_identity;
 
-/** The tails of the tasks of a chunk. */
+/** The entries of ragged tables of the tasks of a chunk. */
 typedef struct checkpoint_tails {
   const uint64_t *counts;                     /* [tasks][tails] entries of each task */
-  const void *entries[CHECKPOINT_MOST_TAILS]; /* of each tail, those of one task after another */
+  const void *entries[CHECKPOINT_MOST_TAILS]; /* of each ragged table, in the order of the tasks */
 } checkpoint_tails;
 
 /** Opens the checkpoint in `folder` (which exists; copied) and reads the records of every file there, verifying all of
@@ -61,14 +62,15 @@ uint64_t checkpoint_missing(const checkpoint *c, uint64_t n, uint64_t *task);
  *  @returns 0 or EXIT_FILES. */
 int checkpoint_begin(checkpoint *c, int rank, message *why);
 
-/** Appends one finished chunk, rows [count][row_bytes] and the tails (NULL when there are none); in the page cache when
- * it returns, safe from the death of this process. After a failure (a full disk) the file ends with its last good
- * record.
+/** Appends one finished chunk, rows [count][row_bytes] and entries (NULL without ragged tables); the data are in
+ * the page cache on return and survive the end of this process. After a failure (a full disk) the file ends with its
+ * last good record.
  *  @returns 0 or EXIT_FILES. */
 int checkpoint_append(checkpoint *c, uint64_t first, uint64_t count, const void *rows, const checkpoint_tails *tails,
                       message *why);
 
-/** fdatasync of this rank's file and, the first time, of the folder and its parent: safe from the death of the machine.
+/** fdatasync of this rank's file and, the first time, of the folder and its parent: the data survive a crash of the
+ * machine.
  *  @returns 0 (also when this rank has no file) or EXIT_FILES. */
 int checkpoint_sync(checkpoint *c, message *why);
 
@@ -77,21 +79,21 @@ int checkpoint_sync(checkpoint *c, message *why);
  *  @returns 0 or EXIT_FILES. */
 int checkpoint_read(checkpoint *c, uint64_t first, uint64_t count, void *rows, message *why);
 
-/** Counts the entries of all tails, of which the functions below tell, from the records as of the last scan.
+/** Counts the entries of all ragged tables, as the functions below need them, in the records of the last scan.
  *  @returns 0, EXIT_FILES, or EXIT_RUN out of memory */
 int checkpoint_count_entries(checkpoint *c, message *why);
 
-/** Number of entries of a tail in all tasks that were counted. */
+/** Number of entries of a ragged table in all tasks that were counted. */
 uint64_t checkpoint_entries(const checkpoint *c, size_t tail);
 
-/** Number of entries of a tail in the tasks before each of first, ..., first + count - 1; that of the task behind the
- *  last is the number of all. Every task before has been counted.
+/** Offsets of tasks first, ..., first + count - 1 in a ragged table: the number of entries of all tasks before each.
+ * The offset of the task after the last is the number of all entries. All tasks before have been counted.
  *  @param stride  from one offset to the next, in numbers
  *  @returns 0 or EXIT_FILES. */
 int checkpoint_read_offsets(checkpoint *c, size_t tail, uint64_t first, uint64_t count, uint64_t *offsets,
                             size_t stride, message *why);
 
-/** Reads entries [first, first + count) of a tail, numbered through all tasks, verifying digests as checkpoint_read.
+/** Reads entries [first, first + count) of a ragged table, numbered through all tasks; verifies as checkpoint_read.
  *  @returns 0 or EXIT_FILES. */
 int checkpoint_read_entries(checkpoint *c, size_t tail, uint64_t first, uint64_t count, void *entries, message *why);
 

@@ -1,8 +1,8 @@
-/* The files of a checkpoint, for its own sources only: names, what is in them, and the state that an open one has.
+/* The files of a checkpoint, for its own sources only: names, contents, and the state of an open checkpoint.
  *
- * A file `part-GENERATION-RANK` is one part_header and then records, in the byte order of the machine (another order
- * does not find its magic number). A record is a record_header and, with tails, counts [count][tails] and their digest;
- * then rows [count][row_bytes]; then the entries of each tail. */
+ * A file `part-GENERATION-RANK` is one part_header and then records, in the byte order of the machine (with another
+ * order the magic number differs). A record is a record_header; with ragged tables, counts [count][tails] and their
+ * digest; then rows [count][row_bytes]; then the entries of each ragged table. */
 #ifndef RICOCHET_APP_CHECKPOINT_FILES_H
 #define RICOCHET_APP_CHECKPOINT_FILES_H
 
@@ -13,7 +13,7 @@
 
 /* Which record holds which task: disjoint ranges in the order of the tasks, and the gaps between them. */
 
-/** Tasks [first, first + count), to be found in the record at `offset` of file number `part`. */
+/** Tasks [first, first + count) are in the record at `offset` of file number `part`. */
 typedef struct index_range {
   uint64_t first, count, offset;
   uint64_t part;
@@ -35,12 +35,12 @@ typedef struct checkpoint_index {
 /** Frees what the index owns and leaves it empty. */
 void index_clear(checkpoint_index *index);
 
-/** Notes a range, in any order; it counts from the next index_settle on.
+/** Adds a range, in any order; index_settle makes it effective.
  *  @returns 0, or EXIT_RUN out of memory. */
 int index_add(checkpoint_index *index, index_range range, message *why);
 
-/** Sorts, cuts overlaps (the range that begins first keeps its tasks; of two that begin together the one of the lower
- *  part, then offset) and finds the gaps among tasks 0..tasks-1.
+/** Sorts the ranges, cuts overlaps (the range that begins first keeps its tasks; of two that begin together that of the
+ *  lower part, then offset) and finds the gaps among tasks 0..tasks-1.
  *  @returns 0, or EXIT_RUN out of memory. */
 int index_settle(checkpoint_index *index, uint64_t tasks, message *why);
 
@@ -59,23 +59,23 @@ enum { PART_FORMAT = 3, PART_BUFFER_BYTES = 1 << 20, PART_NAME_BYTES = 40 };
 typedef struct part_header {
   uint64_t magic, format;
   checkpoint_identity identity; /* version padded with zeros */
-  uint64_t check;               /* digest of all that stands before */
+  uint64_t check;               /* digest of all members before */
 } part_header;
 
 typedef struct record_header {
   uint64_t magic, first, count, bytes; /* bytes: all that follows the header */
   uint64_t rows;                       /* digest of these */
-  uint64_t check;                      /* digest of all that stands before */
+  uint64_t check;                      /* digest of all members before */
 } record_header;
 
-/* Written as they are: no padding that could hold anything. */
+/* Written byte by byte: there must be no padding. */
 _Static_assert(sizeof(checkpoint_identity) == 136 && sizeof(part_header) == 160, "part header has padding");
 _Static_assert(sizeof(record_header) == 48, "record header has padding");
 
 /** A file found in the folder. */
 typedef struct part {
   unsigned generation, rank;
-  uint64_t scanned; /* end of its last good record; 0 as long as its header is not there */
+  uint64_t scanned; /* end of its last good record; 0 until its header is complete */
   bool suspect;     /* the rows of the record after that did not verify */
 } part;
 
@@ -83,7 +83,7 @@ struct checkpoint {
   char folder[PATH_MAX - PART_NAME_BYTES];
   checkpoint_identity identity;
   unsigned generation; /* of the file that checkpoint_begin creates: one above all that were found */
-  part *parts;         /* [part_count], in the order of generation and rank, later finds after earlier ones */
+  part *parts;         /* [part_count], by generation and rank; files found later come after those found earlier */
   size_t part_count;
   checkpoint_index index;
   size_t tails;
@@ -96,10 +96,10 @@ struct checkpoint {
 
   int read_fd; /* of parts[read_part]; -1 when none is open. Only one, as there may be thousands of parts. */
   size_t read_part;
-  size_t verified_part;     /* where the record stands that checkpoint_read verified last */
+  size_t verified_part;     /* place of the record that was verified last */
   uint64_t verified_offset; /* 0 when there is none */
   record_header verified;   /* its header */
-  size_t counts_part;       /* where the record stands whose counts are held */
+  size_t counts_part;       /* place of the record whose counts are in memory */
   uint64_t counts_offset;   /* 0 when there is none */
   record_header counted;    /* its header */
   uint64_t *counts;         /* [counted.count][tails] */
@@ -122,8 +122,8 @@ int refuse_part(const char *path, const char *what, message *why);
 /** Bytes between a record's header and its rows. */
 uint64_t counts_bytes(const checkpoint *c, uint64_t count);
 
-/** What a look at a file can find: something that verifies, something that does not (the end, a torn tail, a flipped
- *  bit), or an error of the file system, which is in `why`. */
+/** Result of reading: verified; not verified (end of file, incomplete record, damage); or an error of the file system,
+ *  given in `why`. */
 typedef enum finding { GOOD, BAD, UNREADABLE } finding;
 
 /** Makes read_fd the file of this part. @returns 0 or EXIT_FILES. */
@@ -138,13 +138,13 @@ finding read_record_header(const checkpoint *c, uint64_t offset, record_header *
 /** EXIT_FILES: the record of a range does not verify. */
 int refuse_record(const checkpoint *c, const index_range *range, message *why);
 
-/** Opens the record that a range stands in and verifies it, unless it is the one that was verified last. */
+/** Opens the record of a range and verifies it, unless it was verified last. */
 int select_record(checkpoint *c, const index_range *range, message *why);
 
 /** Reads bytes of the open part that have been verified. @returns 0 or EXIT_FILES. */
 int read_verified(const checkpoint *c, void *bytes, uint64_t size, uint64_t offset, message *why);
 
-/** Looks for new parts in the folder, reads all parts on from where the last scan ended and settles the index.
+/** Finds new parts in the folder, reads all parts on from the end of the last scan, and updates the index.
  *  @param rows  digest the rows too, not only the headers */
 int checkpoint_scan(checkpoint *c, bool rows, message *why);
 

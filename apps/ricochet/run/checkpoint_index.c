@@ -32,7 +32,7 @@ static int compare_ranges(const void *a, const void *b) {
   return x->part != y->part ? compare(x->part, y->part) : compare(x->offset, y->offset);
 }
 
-/* What is left is disjoint and covers the same tasks, so that cutting again after more was added is sound. */
+/* The remaining ranges are disjoint and cover the same tasks, so later calls with further ranges are correct. */
 static void cut_overlaps(checkpoint_index *index) {
   size_t kept = 0;
   uint64_t reach = 0;
@@ -87,7 +87,7 @@ int index_settle(checkpoint_index *index, uint64_t tasks, message *why) {
 }
 
 const index_range *index_find(const checkpoint_index *index, uint64_t task) {
-  size_t low = 0, high = index->range_count; /* the ranges before `low` begin at or before the task */
+  size_t low = 0, high = index->range_count; /* invariant: ranges before `low` begin at or before the task */
   while (low < high) {
     const size_t middle = low + (high - low) / 2;
     if (index->ranges[middle].first <= task)

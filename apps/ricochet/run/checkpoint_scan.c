@@ -56,7 +56,7 @@ finding read_part(const checkpoint *c, void *bytes, size_t size, uint64_t offset
   return (uint64_t)got == size ? GOOD : BAD;
 }
 
-/* What a record of so many tasks is long at least, and exactly when there are no tails. */
+/* Without ragged tables the length is exactly that of the rows, with them at least that of rows and counts. */
 static bool length_fits(const checkpoint *c, const record_header *header) {
   const uint64_t least = header->count * c->identity.row_bytes + counts_bytes(c, header->count);
   return c->tails ? header->bytes >= least : header->bytes == least;
@@ -105,7 +105,7 @@ static int compare_identity(const char *path, const checkpoint_identity *found, 
   return 0;
 }
 
-/* Leaves `scanned` at 0 when the header is not (yet) there. */
+/* `scanned` stays 0 while the header is incomplete. */
 static int scan_part_header(checkpoint *c, size_t number, message *why) {
   part_header header;
   const finding found = read_part(c, &header, sizeof header, 0, why);
@@ -123,16 +123,16 @@ static int scan_part_header(checkpoint *c, size_t number, message *why) {
   return compare_identity(path, &header.identity, &c->identity, why);
 }
 
-/* Whether the record at the end of what was scanned is whole; its rows are digested if that is asked for, or if they
- * failed before (then they may have been in the middle of being written). */
-static finding look_at_record(checkpoint *c, size_t number, uint64_t size, bool rows, record_header *header,
-                              message *why) {
+/* Whether the record at `scanned` is complete. Its rows are digested if `rows`, or if they failed before (they may have
+ * been incomplete then). */
+static finding check_record(checkpoint *c, size_t number, uint64_t size, bool rows, record_header *header,
+                            message *why) {
   part *p = &c->parts[number];
   const finding found = read_record_header(c, p->scanned, header, why);
   if (found != GOOD)
     return found;
   if (header->bytes > size || p->scanned + sizeof *header > size - header->bytes)
-    return BAD; /* its rows go on behind the end of the file */
+    return BAD; /* its rows extend beyond the end of the file */
   if (!rows && !p->suspect)
     return GOOD;
   const finding verified = verify_rows(c, p->scanned, header, why);
@@ -152,7 +152,7 @@ static int scan_part(checkpoint *c, size_t number, bool rows, message *why) {
     return refuse_number(c, number, "read", why);
   record_header header;
   finding found;
-  while ((found = look_at_record(c, number, (uint64_t)status.st_size, rows, &header, why)) == GOOD) {
+  while ((found = check_record(c, number, (uint64_t)status.st_size, rows, &header, why)) == GOOD) {
     const index_range range = {
         .first = header.first, .count = header.count, .offset = p->scanned, .part = (uint64_t)number};
     code = index_add(&c->index, range, why);
@@ -170,7 +170,7 @@ static int compare_parts(const void *a, const void *b) {
   return (x->rank > y->rank) - (x->rank < y->rank);
 }
 
-static bool is_known(const checkpoint *c, unsigned generation, unsigned rank) {
+static bool has_part(const checkpoint *c, unsigned generation, unsigned rank) {
   for (size_t i = 0; i < c->part_count; i++)
     if (c->parts[i].generation == generation && c->parts[i].rank == rank)
       return true;
@@ -186,7 +186,7 @@ static int note_part(checkpoint *c, unsigned generation, unsigned rank, message 
   return 0;
 }
 
-/* New parts are sorted, so that every rank numbers them alike; known ones keep the numbers that the index refers to. */
+/* New parts are sorted, so that every rank numbers them identically; known ones keep the numbers used in the index. */
 static int find_parts(checkpoint *c, message *why) {
   DIR *entries = opendir(c->folder);
   if (!entries)
@@ -196,7 +196,7 @@ static int find_parts(checkpoint *c, message *why) {
   const struct dirent *entry;
   while (!code && (errno = 0, entry = readdir(entries))) {
     unsigned generation, rank;
-    if (part_name_parse(entry->d_name, &generation, &rank) && !is_known(c, generation, rank))
+    if (part_name_parse(entry->d_name, &generation, &rank) && !has_part(c, generation, rank))
       code = note_part(c, generation, rank, why);
   }
   if (!code && errno)
@@ -208,7 +208,7 @@ static int find_parts(checkpoint *c, message *why) {
 }
 
 int checkpoint_scan(checkpoint *c, bool rows, message *why) {
-  free(c->before); /* counted before the ranges change */
+  free(c->before); /* the counts are those of the old ranges */
   c->before = NULL;
   int code = find_parts(c, why);
   for (size_t i = 0; !code && i < c->part_count; i++)

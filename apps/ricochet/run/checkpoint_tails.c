@@ -2,7 +2,7 @@
 
 #include <stdlib.h>
 
-/* Makes room for the counts of a record. */
+/* Allocates the counts of a record. */
 static int grow_counts(checkpoint *c, uint64_t numbers, message *why) {
   if (numbers <= c->counts_room)
     return 0;
@@ -14,7 +14,7 @@ static int grow_counts(checkpoint *c, uint64_t numbers, message *why) {
   return 0;
 }
 
-/* Opens the record that a range stands in and reads its counts, under their own digest: its rows are not looked at. */
+/* Opens the record of a range and reads its counts, verified by their own digest; the rows are not read. */
 static int select_counts(checkpoint *c, const index_range *range, message *why) {
   int code = open_part(c, range->part, why);
   if (code || (c->counts_offset == range->offset && c->counts_part == range->part))
@@ -38,7 +38,7 @@ static int select_counts(checkpoint *c, const index_range *range, message *why) 
   return 0;
 }
 
-/* Entries of a tail in tasks [first, end) of the record whose counts are held. */
+/* Entries of a ragged table in tasks [first, end) of the record whose counts are in memory. */
 static uint64_t sum_counts(const checkpoint *c, size_t tail, uint64_t first, uint64_t end) {
   uint64_t sum = 0;
   for (uint64_t task = first; task < end; task++)
@@ -106,7 +106,7 @@ static size_t find_entry(const checkpoint *c, size_t tail, uint64_t entry) {
   return low;
 }
 
-/* Where a tail begins behind the header of the record whose counts are held. */
+/* Position of the entries of a ragged table after the header of the record whose counts are in memory. */
 static uint64_t tail_begin(const checkpoint *c, size_t tail) {
   const uint64_t first = c->counted.first, tasks = c->counted.count;
   uint64_t at = counts_bytes(c, tasks) + tasks * c->identity.row_bytes;
@@ -118,7 +118,7 @@ static uint64_t tail_begin(const checkpoint *c, size_t tail) {
 int checkpoint_read_entries(checkpoint *c, size_t tail, uint64_t first, uint64_t count, void *entries, message *why) {
   unsigned char *to = entries;
   if (first > checkpoint_entries(c, tail) || count > checkpoint_entries(c, tail) - first)
-    return refuse(why, EXIT_FILES, "%s: entry %llu of tail %zu is in no record that was counted", c->folder,
+    return refuse(why, EXIT_FILES, "%s: entry %llu of ragged table %zu is in no record that was counted", c->folder,
                   (unsigned long long)(first + count - 1), tail);
   while (count > 0) {
     const size_t number = find_entry(c, tail, first);

@@ -2,8 +2,8 @@
 
 #include <stdlib.h>
 
-/* What launchers leave in the environment of their ranks. SLURM_* alone is no sign of one: a batch script has it, too,
- * and so has whatever the script runs by itself. */
+/* Variables that launchers set for their ranks. SLURM_* alone does not show a launcher: every command of a batch script
+ * has these variables. */
 static const char *const signs[] = {
     "OMPI_COMM_WORLD_SIZE", /* mpirun of Open MPI */
     "PMIX_RANK",            /* PMIx: srun --mpi=pmix, prterun */
@@ -41,8 +41,7 @@ int launcher_check(int ranks, message *why) {
   if (ranks > 1 || started <= 1)
     return 0;
   return refuse(why, EXIT_USAGE,
-                "ricochet run: %ld processes were started, but each sees itself alone: the launcher is not that of "
-                "this program's MPI; "
-                "use mpirun of Open MPI or srun --mpi=pmix",
+                "ricochet run: %ld processes were started, but MPI has one rank in each: the launcher is not that of "
+                "this program's MPI; use mpirun of Open MPI or srun --mpi=pmix",
                 started);
 }

@@ -1,8 +1,8 @@
 /* Whether a launcher started this process as one rank of several, read off the environment before MPI starts.
  *
- * MPI_Init takes some 0.3 s and opens files and sockets, which a run of one process has no use for: what no launcher
- * started computes without MPI, and gives the same bytes of data. The variables that tell stand in one table
- * (launcher.c). */
+ * MPI_Init takes about 0.3 s and opens files and sockets, which a run of one process does not need. A process that no
+ * launcher started therefore computes without MPI, with the same bytes of data. The variables that launchers set are
+ * listed in launcher.c. */
 #ifndef RICOCHET_APP_LAUNCHER_H
 #define RICOCHET_APP_LAUNCHER_H
 
@@ -16,7 +16,7 @@ typedef enum launcher_mode {
   LAUNCHER_OFF   /* this process alone, whatever started it */
 } launcher_mode;
 
-/** What is to be done at the start. */
+/** How this process starts. */
 typedef struct launcher_decision {
   bool parallel; /* start MPI */
   bool silent;   /* leave messages to another process: set for all but the first task of a refused Slurm step */

@@ -1,5 +1,5 @@
-/* F_OFD_SETLK (POSIX 2024, Linux since 3.15) is shown by glibc 2.36 to _GNU_SOURCE only. The older F_SETLK will not do:
- * a process loses such locks as soon as any part of it, a library say, closes the file. */
+/* F_OFD_SETLK (POSIX 2024, Linux since 3.15) needs _GNU_SOURCE with glibc 2.36. Locks of the older F_SETLK are lost as
+ * soon as any code in the process, for example a library, closes the file. */
 #define _GNU_SOURCE
 
 #include "lock.h"
@@ -58,12 +58,12 @@ static int set_lock(const lock *l, short type, off_t start, off_t length) {
   return fcntl(l->fd, F_OFD_SETLK, &range);
 }
 
-static bool somebody_holds(int error) {
+static bool is_held(int error) {
   return error == EAGAIN || error == EACCES;
 }
 
-/* False also when the path leads nowhere. */
-static bool path_leads_to_file(const lock *l) {
+/* False also if there is no file. */
+static bool path_names_file(const lock *l) {
   struct stat locked, found;
   return fstat(l->fd, &locked) == 0 && stat(l->path, &found) == 0 && locked.st_dev == found.st_dev &&
          locked.st_ino == found.st_ino;
@@ -73,13 +73,13 @@ static void read_holder(const lock *l, char *text, size_t size) {
   const ssize_t length = pread(l->fd, text, size - 1, 0);
   text[length > 0 ? length : 0] = '\0';
   text[strcspn(text, "\n")] = '\0';
-  if (!text[0]) /* a holder that has not yet written its name, or could not */
+  if (!text[0]) /* a holder whose name is not, or could not be, written */
     snprintf(text, size, "a process that left no name");
 }
 
 static int write_holder(const lock *l, message *why) {
   char host[256] = "unknown", since[32] = "", text[400];
-  gethostname(host, sizeof host - 1); /* on failure the name stays unknown, which stops nobody */
+  gethostname(host, sizeof host - 1); /* on failure the name stays "unknown" */
   const time_t now = time(NULL);
   struct tm local;
   if (localtime_r(&now, &local))
@@ -107,12 +107,12 @@ static attempt try_whole(lock *l, char *holder, size_t size, message *why) {
   }
   attempt result = TAKEN;
   if (set_lock(l, F_WRLCK, 0, 0)) {
-    result = somebody_holds(errno) ? HELD : IMPOSSIBLE;
+    result = is_held(errno) ? HELD : IMPOSSIBLE;
     if (result == HELD)
       read_holder(l, holder, size);
     else
       refuse_file(l->path, "lock", why);
-  } else if (!path_leads_to_file(l)) {
+  } else if (!path_names_file(l)) {
     result = REPLACED;
   }
   if (result != TAKEN)
@@ -144,7 +144,7 @@ int lock_take(const char *folder, double wait_seconds, lock **out, message *why)
   int code = wait_for_whole(l, wait_seconds, why);
   if (!code)
     code = write_holder(l, why);
-  if (!code && set_lock(l, F_UNLCK, 1, 0)) /* the bytes of the other ranks, who join now */
+  if (!code && set_lock(l, F_UNLCK, 1, 0)) /* the bytes of the other ranks, which join now */
     code = refuse_file(l->path, "unlock", why);
   if (code)
     lock_release(&l, 0);
@@ -157,11 +157,11 @@ static int join(lock *l, int rank, message *why) {
   if (l->fd < 0)
     return refuse_file(l->path, "open", why);
   if (set_lock(l, F_WRLCK, rank, 1)) {
-    if (!somebody_holds(errno))
+    if (!is_held(errno))
       return refuse_file(l->path, "lock", why);
     char holder[400];
     read_holder(l, holder, sizeof holder);
-    return refuse(why, EXIT_FILES, "%s: rank %d finds its place held by %s", l->path, rank, holder);
+    return refuse(why, EXIT_FILES, "%s: the place of rank %d is held by %s", l->path, rank, holder);
   }
   return lock_check(l, why);
 }
@@ -179,7 +179,7 @@ int lock_join(const char *folder, int rank, lock **out, message *why) {
 }
 
 int lock_check(const lock *l, message *why) {
-  if (!path_leads_to_file(l))
+  if (!path_names_file(l))
     return refuse(why, EXIT_FILES, "%s: the lock was removed or replaced while this run held it", l->path);
   return 0;
 }
@@ -187,9 +187,9 @@ int lock_check(const lock *l, message *why) {
 void lock_release(lock **l, int remove) {
   if (!*l)
     return;
-  /* Removed before it is unlocked: whoever waits on this file finds that the path leads elsewhere and opens anew.
-   * A file or folder that stays behind locks nobody out, so failures are not worth a message. */
-  if (remove && (*l)->fd >= 0 && path_leads_to_file(*l)) {
+  /* Removed before it is unlocked: a process that waits for this file then finds that the path names another one, and
+   * opens that. A file or folder that remains locks nothing, so failures are ignored. */
+  if (remove && (*l)->fd >= 0 && path_names_file(*l)) {
     unlink((*l)->path);
     rmdir((*l)->folder);
   }

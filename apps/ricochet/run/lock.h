@@ -1,8 +1,9 @@
-/* One lock per output: who holds it may resume, compute and commit.
+/* One lock per output: its holder alone may resume, compute and commit.
  *
- * Open-file-description locks on `FILE.h5.ckpt/lock`, one byte per rank, so that the lock lives as long as any process
- * of the run does: ranks outlive a killed mpirun by about a second, and the next run waits for them. The kernel frees
- * them when a process ends, however it ends; the text in the file only says who it was and never locks anybody out. */
+ * Open-file-description locks on `FILE.h5.ckpt/lock`, one byte per rank, so that the lock persists as long as any
+ * process of the run: ranks outlive a killed mpirun by about a second, and the next run waits for them. The kernel
+ * frees the locks when a process ends, however it ends. The text in the file only names the holder; it locks nothing.
+ */
 #ifndef RICOCHET_APP_LOCK_H
 #define RICOCHET_APP_LOCK_H
 
@@ -12,17 +13,17 @@ typedef struct lock lock;
 
 /** Takes the whole lock, for rank 0: creates the folder and the file, waits up to `wait_seconds` for a holder to leave,
  *  then writes this process as the holder (host, process, time) and keeps the byte of rank 0 locked.
- *  A file that was removed or replaced while waiting is opened anew. What waiting cannot mend (a folder that cannot be
- *  written, a file system without locks) is refused at once.
+ *  A file that was removed or replaced while waiting is opened anew. Faults that waiting cannot remove (a folder that
+ *  cannot be written, a file system without locks) are refused at once.
  *  @param wait_seconds  0 for one attempt
  *  @returns 0 or EXIT_FILES, naming the holder; *out is NULL then. */
 int lock_take(const char *folder, double wait_seconds, lock **out, message *why);
 
-/** Locks the byte of another rank (>= 1) of the same run, after rank 0 took the lock; does not wait.
+/** Locks the byte of another rank (>= 1) of the same run, after lock_take on rank 0; does not wait.
  *  @returns 0 or EXIT_FILES; *out is NULL then. */
 int lock_join(const char *folder, int rank, lock **out, message *why);
 
-/** Whether the path still leads to the file that is locked: nobody commits after losing the lock.
+/** Whether the path still names the locked file: a run that has lost the lock must not commit.
  *  @returns 0 or EXIT_FILES. */
 int lock_check(const lock *l, message *why);
 

@@ -43,7 +43,7 @@ static void format_duration(char *text, double seconds) {
     snprintf(text, 32, "%d h %d min", (int)seconds / 3600, (int)seconds % 3600 / 60);
 }
 
-/* "  53 %  5300/10000 tasks  412/s  12 s left": the rate and the time left once there is something to tell them from.
+/* "  53 %  5300/10000 tasks  412/s  12 s left": the rate and the time left as soon as they are known.
  */
 static void format_state(const progress *p, uint64_t done, double now, char *text, size_t size) {
   const double share = p->total ? (double)done / (double)p->total : 1;

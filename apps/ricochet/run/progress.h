@@ -1,4 +1,4 @@
-/* Progress on standard error: a bar on a terminal, a line now and then otherwise, silence on request. Rank 0 only. */
+/* Progress on standard error: a bar on a terminal, a line every 30 s otherwise, nothing on request. Rank 0 only. */
 #ifndef RICOCHET_APP_PROGRESS_H
 #define RICOCHET_APP_PROGRESS_H
 

@@ -1,8 +1,8 @@
-/* The ranks of a run as one program: start, agreement on failures, small reductions. All of MPI that commands need.
+/* The ranks of a run: start, agreement on failures, small reductions. Commands use no other function of MPI.
  *
- * A process that never started MPI is one rank among one, and everything here holds for it, too.
+ * A process that never started MPI is the only rank, and all functions below work for it.
  * Every function but ranks_rank, ranks_count and ranks_parallel is collective. MPI failures outside the scheduler and
- * the result writer end the job: there is nobody left to agree with. */
+ * the result writer end the job. */
 #ifndef RICOCHET_APP_RANKS_H
 #define RICOCHET_APP_RANKS_H
 
@@ -12,7 +12,7 @@
 
 #include "../base/message.h"
 
-/** Starts MPI. Without this call the process is alone. */
+/** Starts MPI. Without this call the process is the only rank. */
 void ranks_start(int *argc, char ***argv);
 /** Ends MPI if it was started. */
 void ranks_finish(void);
@@ -26,10 +26,10 @@ void ranks_barrier(void);
  *  did. */
 int ranks_agree(int code, message *why);
 
-/** Gives rank 0's value to all. */
+/** Broadcasts the value of rank 0. */
 void ranks_share(void *bytes, size_t size);
 
-/** Gives rank 0's text to all: malloc'd on the other ranks, which free it. */
+/** Broadcasts the text of rank 0; malloc'd on the other ranks, which free it. */
 int ranks_share_text(char **text, size_t *length, message *why);
 
 double ranks_max(double value);

@@ -7,11 +7,11 @@
 #include "ranks.h"
 #include "stop.h"
 
-/* Half of what the poll promises to callers over TCP; an MPI_Iprobe costs about a microsecond. */
+/* Half the interval at which callers poll (scheduler.h); an MPI_Iprobe costs about a microsecond. */
 static const double progress_interval = 0.5e-3;
-/* A look at the counter costs 4 to 14 microseconds on one node, a millisecond between nodes. */
-static const double look_interval = 0.1;
-/* Long against a fetch (a millisecond when oversubscribed), short against anybody's patience at the end of a run. */
+/* A read of the counter costs 4 to 14 microseconds on one node, a millisecond between nodes. */
+static const double read_interval = 0.1;
+/* Long against a fetch (a millisecond when oversubscribed), short against the wait for the last rank of a run. */
 static const double chunk_seconds = 20e-3;
 static const double shortest_chunk_seconds = 10e-3;
 
@@ -23,11 +23,11 @@ struct scheduler {
   int64_t own;
   int rank, ranks;
   int64_t items;
-  int64_t mark;  /* what a stop adds; the items asked for never add up to it */
-  int64_t taken; /* at the last look, not above items */
+  int64_t mark;  /* what a stop adds; larger than the sum of all requests */
+  int64_t taken; /* at the last read, at most `items` */
   bool stopped, stop_sent;
-  double progressed, looked; /* clock_seconds */
-  message failure;           /* empty when there was none */
+  double progressed, counter_read; /* clock_seconds */
+  message failure;                 /* empty when there was none */
 };
 
 static int refuse_mpi(message *why, int status, const char *what) {
@@ -61,7 +61,7 @@ static int open_window(scheduler *s, message *why) {
       status = MPI_Win_unlock(0, s->window);
   }
   if (status == MPI_SUCCESS)
-    status = MPI_Barrier(s->comm); /* nobody adds before the zero is there */
+    status = MPI_Barrier(s->comm); /* no rank adds before the counter is zero */
   if (status == MPI_SUCCESS)
     status = MPI_Win_lock_all(0, s->window);
   return status == MPI_SUCCESS ? 0 : refuse_mpi(why, status, "cannot open the shared counter");
@@ -88,7 +88,7 @@ int scheduler_create(uint64_t items, scheduler **out, message *why) {
   if (!code && s->shared)
     code = open_window(s, why);
   if (code) {
-    /* After a failure of MPI what it gave is left alone: freeing is collective and might wait for ever. */
+    /* After a failure of MPI its objects are not freed: that is collective and might wait forever. */
     free(s);
     return code;
   }
@@ -125,7 +125,7 @@ static int reach_counter(scheduler *s, int64_t amount, int64_t *before) {
   return status == MPI_SUCCESS ? MPI_Win_flush(0, s->window) : status;
 }
 
-/* Adds to the counter, or only looks at it when `amount` is 0, and keeps what it learns.
+/* Adds to the counter, or only reads it if `amount` is 0, and updates `taken` and `stopped`.
  * @returns the counter before, or the mark when MPI failed (which reads as "stopped"). */
 static int64_t fetch_and_add(scheduler *s, int64_t amount) {
   int64_t before = s->mark;
@@ -137,7 +137,7 @@ static int64_t fetch_and_add(scheduler *s, int64_t amount) {
   const int64_t asked_for = before % s->mark;
   s->taken = asked_for < s->items ? asked_for : s->items;
   s->stopped = s->stopped || before >= s->mark;
-  s->looked = clock_seconds();
+  s->counter_read = clock_seconds();
   return before;
 }
 
@@ -176,7 +176,7 @@ bool scheduler_poll(scheduler *s) {
   if (status != MPI_SUCCESS)
     fail(s, status, "cannot make progress");
   s->progressed = now;
-  if (!s->stopped && !(now - s->looked < look_interval))
+  if (!s->stopped && !(now - s->counter_read < read_interval))
     fetch_and_add(s, 0);
   return s->stopped;
 }

@@ -1,13 +1,12 @@
-/* Hands out the tasks of a sweep to the ranks from a shared counter.
+/* Distributes the tasks of a sweep to the ranks by a shared counter.
  *
  * Without MPI the counter is a number of the one process. With it the counter lives on rank 0 in a one-sided window; a
- * rank takes its next chunk by fetch-and-add, so uneven costs balance themselves and no rank is lost to a master. Over
- * TCP the counter moves only while its owner is inside MPI: whoever computes for long calls scheduler_poll at least
- * each millisecond.
+ * rank takes its next chunk by fetch-and-add, so uneven costs balance and no rank is needed as a master. Over TCP the
+ * counter changes only while its owner is inside MPI: long computations call scheduler_poll at least every millisecond.
  *
- * The only operations on the counter are additions and plain looks (MPI promises that concurrent operations are atomic
- * only when they are of one kind). A stop is therefore an addition too: of a mark larger than all the items that can
- * ever be asked for. */
+ * The only operations on the counter are additions and reads by MPI_NO_OP (MPI guarantees that concurrent operations
+ * are atomic only if they are of one kind). A stop is therefore an addition too: of a mark larger than the number of
+ * items that can ever be requested. */
 #ifndef RICOCHET_APP_SCHEDULER_H
 #define RICOCHET_APP_SCHEDULER_H
 
@@ -38,13 +37,13 @@ uint64_t scheduler_next_size(const scheduler *s, uint64_t last_size, double last
  * that another rank stopped the run. @returns true when the run is stopped. */
 bool scheduler_poll(scheduler *s);
 
-/** Stops the run on every rank: later takes return 0. Further calls do nothing. */
+/** Stops the run on every rank: scheduler_take returns 0 from then on. Further calls have no effect. */
 void scheduler_stop(scheduler *s);
 
-/** Looks at the counter now: after a barrier all ranks get the same answer. Not for inner loops (scheduler_poll is). */
+/** Reads the counter now: after a barrier all ranks get the same answer. Inner loops use scheduler_poll. */
 bool scheduler_stopped(scheduler *s);
 
-/** Items taken so far by all ranks, as of this rank's last look at the counter (100 ms old when it polls). */
+/** Items taken so far by all ranks, when this rank last read the counter (at most 100 ms ago if it polls). */
 uint64_t scheduler_taken(const scheduler *s);
 
 /** Failure of MPI in any of the calls above that have no message of their own; the run counts as stopped then.

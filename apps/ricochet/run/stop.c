@@ -4,8 +4,8 @@
 #include <stddef.h>
 #include <time.h>
 
-/* A signal handler reaches nothing but objects of static storage: these, of this type, are what the C standard lets it
- * write. The deadline is with them because there is one process and one limit. */
+/* The C standard lets a signal handler write only static objects of this type. The deadline is static, too: there is
+ * one process and one limit. */
 static volatile sig_atomic_t asked;
 static volatile sig_atomic_t fatal_signal;
 static double deadline;
@@ -32,7 +32,7 @@ void stop_watch(double max_seconds) {
   handle(SIGUSR1, note_request);
   handle(SIGTERM, note_fatal);
   handle(SIGINT, note_fatal);
-  /* A full quota and a closed pipe come back as EFBIG and EPIPE, which the caller reports, instead of a death. */
+  /* A full quota and a closed pipe then give EFBIG and EPIPE, which the caller reports, and do not kill the process. */
   handle(SIGXFSZ, SIG_IGN);
   handle(SIGPIPE, SIG_IGN);
 }

@@ -4,8 +4,8 @@
 
 #include "kind/family/curve_trace.h"
 
-/** Tails of a branch: its points, its special points, the impacts of these (and of points whose states are stored), its
- * segments; where the study asks for curves in two parameters, their points and how they ended. */
+/** Ragged tables of a branch: its points, its special points, the impacts of these (and of points whose states are
+ *  stored), its segments; with `branch.trace` the points of curves and how these ended. */
 enum {
   BRANCH_POINTS,
   BRANCH_SPECIAL,
@@ -17,14 +17,15 @@ enum {
   BRANCH_TAILS_WITH_CURVES
 };
 
-/** A row: how the first segment ended, and what all of them took. */
+/** A row: how the first segment ended, and the work of all segments. */
 typedef struct branch_row {
   int outcome;
   const char *reason;
   long long points, segments, iterations, jacobians;
 } branch_row;
 
-/** Records of the tails: the members that their columns name. Histories and multipliers are filled in their places. */
+/** Records of the ragged tables: the members that their columns name. Histories and multipliers point into the record.
+ */
 typedef struct branch_point {
   long long segment;
   double parameter;
@@ -77,14 +78,14 @@ typedef struct branch_curve_point {
 /** The columns of its tables (kind.h). */
 extern const column_list branch_lists[];
 
-/** Lays out the row and the tails.
+/** Lays out the row and the ragged tables.
  *  @param followed  name of the parameter, borrowed; the columns of its values bear it
  *  @param traced  that of the second one, borrowed; NULL without curves */
 void branch_lay_out(const study_values *v, const char *followed, const char *traced, kind_plan *plan);
 
-/** Whether a study of kind `branch` says that it starts from a result. */
+/** Whether a study of kind `branch` starts from a result. */
 bool branch_restarts(const study *s);
-/** Exchanges it for the complete one (kind.h). */
+/** Replaces it by the complete study (kind.h). */
 int branch_resolve(study **s, const study_source *from, message *why);
 
 #endif

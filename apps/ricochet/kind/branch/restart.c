@@ -1,5 +1,5 @@
-/* A branch that restarts from a point of an earlier result: the motion is read from there, and put into the study in
- * the place of a first guess. */
+/* A branch that restarts from a point of an earlier result: the motion is read from the result and replaces the first
+ * guess of the study. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -17,13 +17,13 @@ typedef struct stored_impact {
   bool wall; /* or its floor */
 } stored_impact;
 
-/** A number that varies in the result, by its key. */
+/** A number that varies in the result, with its key. */
 typedef struct stored_number {
   char name[96];
   double value;
 } stored_number;
 
-enum { MOST_NUMBERS = 9 /* one that is followed, and those swept */ };
+enum { MOST_NUMBERS = 9 /* the continuation parameter and the swept ones */ };
 
 typedef struct stored_motion {
   size_t particles;
@@ -31,11 +31,11 @@ typedef struct stored_motion {
   double period, energy;
   stored_impact *impacts; /* [impact_count] as ric_orbit lists them */
   size_t impact_count;
-  stored_number numbers[MOST_NUMBERS]; /* the one that is followed first */
+  stored_number numbers[MOST_NUMBERS]; /* the continuation parameter first */
   size_t number_count;
 } stored_motion;
 
-/** Where it stands. */
+/** Its place in the result. */
 typedef struct stored_where {
   const char *path;
   uint64_t task, index;
@@ -50,7 +50,7 @@ typedef struct stored_file {
   const char *what; /* "special" or "point" */
 } stored_file;
 
-/* The set "<what>_<name>" of the points that are looked at. */
+/* The data set "<what>_<name>". */
 static const reader_set *find_of(const stored_file *f, const char *name) {
   char full[64];
   snprintf(full, sizeof full, "%s_%s", f->what, name);
@@ -58,7 +58,7 @@ static const reader_set *find_of(const stored_file *f, const char *name) {
 }
 
 static int refuse_set(const stored_file *f, const char *name) {
-  return refuse(f->at.why, EXIT_FILES, "%s: no sound data set %s in it", f->at.path, name);
+  return refuse(f->at.why, EXIT_FILES, "%s: data set %s is missing or of another shape or type", f->at.path, name);
 }
 
 /* Rows of a set with one number, or integer, per row. */
@@ -83,7 +83,7 @@ static int read_range(const stored_file *f, const char *what, uint64_t task, int
 static int read_vector(const stored_file *f, const char *name, uint64_t row, double **values, size_t *count) {
   const reader_set *s = find_of(f, name);
   if (!s && strcmp(f->what, "point") == 0)
-    return refuse(f->at.why, EXIT_USAGE, "%s: it holds no states of points, expected a result with branch.states: true",
+    return refuse(f->at.why, EXIT_USAGE, "%s: the points have no states, expected a result with branch.states: true",
                   f->at.path);
   if (!s || s->rank != 2 || s->type != READER_NUMBER || row >= s->shape[0] || s->shape[1] < 1)
     return refuse_set(f, name);
@@ -147,7 +147,7 @@ static int read_impacts(const stored_file *f, const stored_where *where, stored_
   return code;
 }
 
-/* What else varies in the result. */
+/* The swept numbers of the result. */
 static int read_swept(const stored_file *f, uint64_t task, stored_motion *m) {
   int code = 0;
   for (size_t i = 0; i < f->sweep.count && m->number_count < MOST_NUMBERS && !code; i++) {
@@ -203,28 +203,28 @@ static void stored_motion_clear(stored_motion *m) {
   *m = (stored_motion){0};
 }
 
-/* --- what a study takes from it --- */
+/* --- assignments to the study --- */
 
-/* Impacts closer than this part of the period to t = 0 or T/2 are there. */
+/* Impacts within this fraction of the period from t = 0 or T/2 are at these times. */
 static const double at_once = 1e-9;
 
 enum { MOST_ADDED = 16 + MOST_NUMBERS };
 
-/* What a study takes from the motion: the numbers that its assignments point to stand beside them. */
-typedef struct taken {
+/* The assignments that the motion gives, and the numbers to which they point. */
+typedef struct assignments {
   study_assignment all[MOST_ADDED];
   double numbers[MOST_ADDED];
   size_t count;
-} taken;
+} assignments;
 
-static void assign_number(taken *t, const char *path, double value) {
+static void assign_number(assignments *t, const char *path, double value) {
   t->numbers[t->count] = value;
   t->all[t->count] =
       (study_assignment){.path = path, .numbers = &t->numbers[t->count], .count = 1, .what = ASSIGN_NUMBER};
   t->count++;
 }
 
-static void assign_list(taken *t, const char *path, const double *numbers, size_t count) {
+static void assign_list(assignments *t, const char *path, const double *numbers, size_t count) {
   t->all[t->count++] = (study_assignment){.path = path, .numbers = numbers, .count = count, .what = ASSIGN_LIST};
 }
 
@@ -235,9 +235,9 @@ static bool is_swept(const study *s, const char *name) {
   return false;
 }
 
-/* Where the branch starts, of a parameter that did not vary in the result: at the motion's own period or energy, at
- * what the study says, or else at the number of its model. */
-static void assign_from(taken *a, const study *s, const study_values *v, const stored_motion *m) {
+/* Start of the branch along a parameter that did not vary in the result: the period or energy of the motion, the value
+ * of the study, or else that of its model. */
+static void assign_from(assignments *a, const study *s, const study_values *v, const stored_motion *m) {
   const study_parameter *followed = family_followed(s);
   if (!followed)
     return;
@@ -249,9 +249,9 @@ static void assign_from(taken *a, const study *s, const study_values *v, const s
     assign_number(a, "branch.from", value_number(v, followed->key, followed->item < 0 ? 0 : (size_t)followed->item));
 }
 
-/* Whether a number that varies in the result is of no use here: it belongs to the first guess there, in the place of
- * which the state and its impacts have come, or it is the energy of a motion whose period is to be followed. */
-static bool is_done_with(const study *s, const char *name) {
+/* Whether a number that varies in the result is not assigned: it belongs to the first guess, which the state and the
+ * impacts replace, or it is the energy of a motion whose period is the parameter. */
+static bool is_superseded(const study *s, const char *name) {
   static const char *const guesses[] = {"start.",         "orbit.excited", "orbit.mode",     "orbit.swings",
                                         "orbit.at_start", "orbit.at_half", "orbit.sequence", "orbit.times"};
   for (size_t i = 0; i < sizeof guesses / sizeof *guesses; i++)
@@ -261,8 +261,8 @@ static bool is_done_with(const study *s, const char *name) {
   return followed && followed->key == KEY_ORBIT_PERIOD && strcmp(name, "orbit.energy") == 0;
 }
 
-/* The numbers that vary in the result, but those that vary in the study. */
-static void assign_numbers(taken *a, const study *s, const study_values *v, const stored_motion *m) {
+/* The numbers that vary in the result but not in the study. */
+static void assign_numbers(assignments *a, const study *s, const study_values *v, const stored_motion *m) {
   const char *followed = family_followed(s) ? family_followed(s)->name : "";
   bool known = false;
   for (size_t i = 0; i < m->number_count; i++) {
@@ -270,14 +270,14 @@ static void assign_numbers(taken *a, const study *s, const study_values *v, cons
     if (strcmp(n->name, followed) == 0) {
       assign_number(a, "branch.from", n->value);
       known = true;
-    } else if (!is_swept(s, n->name) && !is_done_with(s, n->name))
+    } else if (!is_swept(s, n->name) && !is_superseded(s, n->name))
       assign_number(a, n->name, n->value);
   }
   if (!known)
     assign_from(a, s, v, m);
 }
 
-/* Whether a key of the motion is neither followed nor swept, here or in the result. */
+/* Whether a key of the motion varies neither in the study nor in the result. */
 static bool is_fixed(const study *s, study_key key, const char *name, const stored_motion *m) {
   for (size_t i = 0; i < m->number_count; i++)
     if (strcmp(m->numbers[i].name, name) == 0)
@@ -285,8 +285,8 @@ static bool is_fixed(const study *s, study_key key, const char *name, const stor
   return !(family_followed(s) && family_followed(s)->key == key) && !is_swept(s, name);
 }
 
-/* The numbers of the motion that the model does not give: its period, and its energy where the study has one. */
-static void assign_period(taken *a, const study *s, const study_values *v, const stored_motion *m) {
+/* The period of the motion, and its energy if the study gives one. */
+static void assign_period(assignments *a, const study *s, const study_values *v, const stored_motion *m) {
   const bool forced = strcmp(value_word(v, KEY_ORBIT_MOTION), "forced") == 0;
   const bool multiple = value_number(v, KEY_ORBIT_FORCING_PERIODS, 0) > 0;
   if (!forced && !multiple && is_fixed(s, KEY_ORBIT_PERIOD, "orbit.period", m))
@@ -306,7 +306,7 @@ static void add_hit(hits *h, const stored_impact *impact) {
   h->times[h->count++] = impact->time;
 }
 
-/* Of even motions: those at t = 0, at T/2 and between; the second half mirrors the first. */
+/* Even motions: impacts at t = 0, at T/2 and between; those of the second half follow by symmetry. */
 static void sort_even(const stored_motion *m, hits *start, hits *half, hits *between) {
   const double T = m->period;
   for (size_t k = 0; k < m->impact_count; k++) {
@@ -320,7 +320,7 @@ static void sort_even(const stored_motion *m, hits *start, hits *half, hits *bet
   }
 }
 
-/* Of others the last one listed comes first; times go on rising beyond the period. */
+/* Other motions: the last impact of the list comes first; later times continue beyond the period. */
 static void sort_sequence(const stored_motion *m, hits *sequence) {
   for (size_t k = 0; k < m->impact_count; k++) {
     stored_impact impact = m->impacts[(k + m->impact_count - 1) % m->impact_count];
@@ -330,7 +330,7 @@ static void sort_sequence(const stored_motion *m, hits *sequence) {
   }
 }
 
-static void assign_impacts(taken *a, const study_values *v, const stored_motion *m, double *store) {
+static void assign_impacts(assignments *a, const study_values *v, const stored_motion *m, double *store) {
   const size_t n = m->impact_count + 1;
   hits lists[3];
   for (size_t i = 0; i < 3; i++)
@@ -345,8 +345,8 @@ static void assign_impacts(taken *a, const study_values *v, const stored_motion 
   assign_list(a, "orbit.times", lists[2].times, lists[2].count);
 }
 
-/* The state takes the place of every other first guess. */
-static void assign_state(taken *a, const stored_motion *m) {
+/* The state replaces every other first guess. */
+static void assign_state(assignments *a, const stored_motion *m) {
   a->all[a->count++] = (study_assignment){.path = "start", .what = ASSIGN_EMPTY};
   assign_list(a, "start.q", m->q, m->particles);
   assign_list(a, "start.v", m->v, m->particles);
@@ -355,16 +355,17 @@ static void assign_state(taken *a, const stored_motion *m) {
   a->all[a->count++] = (study_assignment){.path = "orbit.mode", .what = ASSIGN_NULL};
 }
 
-/* A study names particles: of one between a floor and a wall it means the floor. */
+/* A study gives particles only: of a particle with floor and wall it means the floor. Refuses impacts that this
+ * excludes. */
 static int check_sides(const study *s, const study_values *v, const stored_motion *m, message *why) {
   for (size_t k = 0; k < m->impact_count; k++) {
     const size_t i = (size_t)m->impacts[k].particle;
     if (i >= (size_t)value_number(v, KEY_MODEL_PARTICLES, 0))
-      return refuse(why, EXIT_USAGE, "%s: the restart has an impact of particle %zu, which the model has not",
+      return refuse(why, EXIT_USAGE, "%s: the restart has an impact of particle %zu, which does not exist in the model",
                     study_name(s), i);
     if (m->impacts[k].wall && value_number(v, KEY_MODEL_FLOOR, value_is_list(v, KEY_MODEL_FLOOR) ? i : 0) > -INFINITY)
       return refuse(why, EXIT_USAGE,
-                    "%s: the restart has an impact at the wall of particle %zu, which has a floor, too", study_name(s),
+                    "%s: the restart has an impact at the wall of particle %zu, which also has a floor", study_name(s),
                     i);
   }
   return 0;
@@ -382,10 +383,10 @@ static int find_motion(const study *s, const study_values *v, stored_motion *m, 
   return code ? code : check_sides(s, v, m, why);
 }
 
-/* Reads the study once more, with what it takes added to its assignments. */
+/* Parses the study again, with the assignments from the motion. */
 static int parse_again(const study *s, const study_values *v, const stored_motion *m, study_source from, study **out,
                        message *why) {
-  taken t = {.count = 0};
+  assignments t = {.count = 0};
   char place[224];
   double *store = calloc(6 * (m->impact_count + 1), sizeof *store);
   if (!store)

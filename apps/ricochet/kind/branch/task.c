@@ -1,5 +1,5 @@
-/* kind: branch. A family of periodic motions along one parameter, at every grid point of the others; where the study
- * asks for it, the families that begin at its special points, and curves of these in two parameters. */
+/* kind: branch. A family of periodic motions along one parameter, at every grid point of the others; if the study asks
+ * for them, the families that begin at its special points, and curves of special points in two parameters. */
 #include "branch.h"
 
 #include <math.h>
@@ -20,7 +20,7 @@ struct worker {
 typedef struct branch_rows {
   branch_family *b;
   const kind_plan *plan;
-  records *tails; /* [plan->tail_count], behind the records of earlier tasks */
+  records *tails; /* [plan->tail_count], with the records of earlier tasks before those of this one */
   bool states;    /* with the impacts of every point */
   int outcome;    /* of the first segment: ric_curve_end and beyond */
   char reason[CURVE_REASON_BYTES];
@@ -80,7 +80,7 @@ static void keep_reason(char *to, const char *reason) {
   snprintf(to, CURVE_REASON_BYTES, "%.*s", CURVE_REASON_BYTES - 1, reason);
 }
 
-/* A new record of a tail; NULL, and the task ends, when there is no memory. */
+/* A new record of a ragged table; without memory NULL, and the task ends. */
 static unsigned char *add_record(branch_rows *w, size_t which) {
   unsigned char *record = records_add(&w->tails[which]);
   if (!record)
@@ -88,7 +88,8 @@ static unsigned char *add_record(branch_rows *w, size_t which) {
   return record;
 }
 
-/* The impacts of a motion; with its first state they say all of it. @param at, special  -1: not that */
+/* Adds the impacts of a motion, which with its first state determine it. @param at, special  point or special point of
+ * the task, -1: none */
 static void add_impacts(branch_rows *w, const ric_orbit *o, long long at, long long special) {
   for (size_t k = 0; k < o->impacts; k++) {
     unsigned char *record = add_record(w, BRANCH_IMPACTS);
@@ -106,7 +107,7 @@ static void add_impacts(branch_rows *w, const ric_orbit *o, long long at, long l
   }
 }
 
-/* Largest displacement; NaN, and the task may end, when the motion cannot be run once more. */
+/* Largest displacement; NaN if the motion cannot be run again; then the task may end. */
 static double amplitude(branch_rows *w, ric_family *family, const ric_family_point *point) {
   double most = NAN;
   const ric_status status = ric_shooting_amplitude(ric_family_shooting(family), point->z, point->given, &most, NULL);
@@ -115,7 +116,7 @@ static double amplitude(branch_rows *w, ric_family *family, const ric_family_poi
   return status == RIC_OK ? most : NAN;
 }
 
-/* States over the period, in their places in the record; NaN where the motion cannot be run once more. */
+/* Writes states over the period into the record; they stay NaN if the motion cannot be run again. */
 static void fill_history(branch_rows *w, ric_family *family, const ric_family_point *point, const branch_point *to) {
   if (!to->history_q || !to->history_v)
     return;
@@ -126,7 +127,7 @@ static void fill_history(branch_rows *w, ric_family *family, const ric_family_po
     w->status = status;
 }
 
-/* All of them, in their places in the record; NaN where they are not known. */
+/* Writes all multipliers into the record; NaN if unknown. */
 static void fill_multipliers(const branch_rows *w, const ric_multipliers *found, ric_complex *to) {
   for (size_t i = 0; to && i < 2 * w->b->model.lattice.particles; i++)
     to[i] = found && i < found->count ? found->mu[i] : (ric_complex){NAN, NAN};
@@ -198,7 +199,7 @@ typedef struct curve_origin {
   const ric_family_point *point;
 } curve_origin;
 
-/* Whether the study wants curves through special points of this kind. */
+/* Whether the study asks for curves through special points of this kind. */
 static bool is_traced(const branch_family *b, ric_family_kind what) {
   const char *words = KEY_BRANCH_TRACE_KINDS->words, *name = ric_family_kind_name(what);
   const long place = schema_find_word(name, strlen(name), words);
@@ -238,7 +239,7 @@ static ric_status trace_curve(branch_rows *w, ric_family *family, const ric_fami
 
 /* --- segments --- */
 
-/* How the first segment ends is how the task does. */
+/* The outcome of the first segment is that of the task. */
 static void add_segment(branch_rows *w, const ric_explore_segment *s, int outcome) {
   unsigned char *record = add_record(w, BRANCH_SEGMENTS);
   if (s->origin == RIC_EXPLORE_START) {
@@ -260,10 +261,10 @@ static void add_segment(branch_rows *w, const ric_explore_segment *s, int outcom
                         .missed = (long long)s->run.missed});
 }
 
-/* A branch that does not begin is a row with its reason.
+/* A branch that cannot start is a row with its reason.
  * @param family  NULL where there is none  @returns RIC_OK, RIC_ESTOPPED or RIC_ENOMEM */
-static ric_status add_unborn(branch_rows *w, ric_family *family, ric_status status, const ric_error *error,
-                             int outcome) {
+static ric_status add_failed_start(branch_rows *w, ric_family *family, ric_status status, const ric_error *error,
+                                   int outcome) {
   const ric_explore_segment none = {
       .origin = RIC_EXPLORE_START, .special = SIZE_MAX, .family = family, .reason = error->message};
   if (status == RIC_ESTOPPED || status == RIC_ENOMEM)
@@ -306,7 +307,7 @@ static ric_status explore(branch_rows *w, const family_task *t, double *z) {
   ric_status status = family_task_solve(t, z, &parameter, &iterations, &error);
   w->iterations += (unsigned long long)iterations;
   if (status != RIC_OK)
-    return add_unborn(w, t->family.family, status, &error, CURVE_FAILED_START);
+    return add_failed_start(w, t->family.family, status, &error, CURVE_FAILED_START);
   status = ric_family_explore(t->family.family, z, parameter, &options, &visitor, &error);
   return w->status != RIC_OK ? w->status : status;
 }
@@ -315,10 +316,10 @@ static ric_status follow(branch_rows *w, family_task *t) {
   ric_error error = {0};
   ric_status status = family_task_open(t, &error);
   if (status != RIC_OK)
-    return add_unborn(w, NULL, status, &error, CURVE_REFUSED);
+    return add_failed_start(w, NULL, status, &error, CURVE_REFUSED);
   status = family_task_begin(t, &error);
   if (status != RIC_OK)
-    return add_unborn(w, NULL, status, &error, CURVE_FAILED_START);
+    return add_failed_start(w, NULL, status, &error, CURVE_FAILED_START);
   double *z = calloc(ric_shooting_unknowns(ric_family_shooting(t->family.family)), sizeof *z);
   status = z ? explore(w, t, z) : RIC_ENOMEM;
   free(z);
@@ -346,7 +347,7 @@ static int branch_evaluate(worker *w, const kind_plan *plan, task_range tasks, u
   family_task_close(&w->task);
   if (status == RIC_ESTOPPED)
     return -1;
-  if (status != RIC_OK) { /* of a branch that does not fit, nothing is kept */
+  if (status != RIC_OK) { /* out of memory: all records of the task are dropped */
     for (size_t k = 0; k < plan->tail_count; k++)
       records_cut(&tails[k], before[k]);
     found = (branch_rows){.plan = plan, .outcome = CURVE_REFUSED, .reason = "no memory for its points"};
@@ -361,7 +362,7 @@ bool branch_restarts(const study *s) {
   return study_is_kind(s, "branch") && study_value(s, KEY_RESTART_FILE)->present;
 }
 
-/* Where a branch restarts, what it takes from there is not known yet, and how its keys fit together not checked. */
+/* Before a restart is resolved its values are unknown, so its keys are checked afterwards. */
 static int check_restart(const study *s, const document *d, message *why) {
   const bool special = study_has(s, KEY_RESTART_SPECIAL), point = study_has(s, KEY_RESTART_POINT);
   if (special != point)

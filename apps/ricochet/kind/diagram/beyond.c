@@ -11,8 +11,8 @@ int beyond_init(beyond *b, const study *s, ric_poll poll, message *why) {
   if (!b->swept)
     return refuse(why, EXIT_RUN, "%s: no memory for a task", study_name(s));
   const int code = family_task_init(&b->task, s, poll, why);
-  b->task.family.multipliers = false; /* those of L tell */
-  b->task.from_state = false;         /* the section `start` is that of the iterates */
+  b->task.family.multipliers = false; /* the multipliers of L are used instead */
+  b->task.from_state = false;         /* the section `start` is the first state of the iterates */
   return code;
 }
 
@@ -36,7 +36,7 @@ static double swept_value(const study_values *v, const study_sweep *sweep) {
   return value_number(v, sweep->key, sweep->item < 0 ? 0 : (size_t)sweep->item);
 }
 
-/* Whether the grazing that is known is that of these values. */
+/* Whether the grazing point found last is that of these values. */
 static bool is_same(const beyond *b, const study_values *v) {
   bool same = b->known;
   for (size_t i = 0; i < study_sweeps(b->study); i++) {
@@ -46,7 +46,7 @@ static bool is_same(const beyond *b, const study_values *v) {
   return same;
 }
 
-/* The values of the task as the family has them: its parameter moves from branch.from on. */
+/* The values of the task for the family, whose parameter starts at branch.from. */
 static void put_values(beyond *b, const study_values *v) {
   study_values_at(b->task.values, 0);
   for (size_t i = 0; i < study_sweeps(b->study); i++) {
@@ -55,7 +55,7 @@ static void put_values(beyond *b, const study_values *v) {
   }
 }
 
-/* A task of kind grazing without a row. */
+/* A grazing_task whose row is not stored. */
 static ric_status find_point(beyond *b, ric_error *error) {
   static const kind_plan no_row = {0};
   branch_family *family = &b->task.family;

@@ -1,4 +1,4 @@
-/* What `show` says of the attractors of diagrams and basins, in sentences. */
+/* What `show` prints about the attractors of diagrams and basins, in sentences. */
 #include "diagram.h"
 
 #include <inttypes.h>

@@ -132,7 +132,7 @@ static int check_section(const study *s, const document *d, message *why) {
   return 0;
 }
 
-/* --- what is wanted ----------------------------------------------------------------------------------------------- */
+/* --- what is stored ----------------------------------------------------------------------------------------------- */
 
 static int refuse_measure(const study *s, const document *d, int node, const char *label, double measure,
                           message *why) {
@@ -140,7 +140,7 @@ static int refuse_measure(const study *s, const document *d, int node, const cha
                          study_number(s, KEY_ITERATE_KEEP));
 }
 
-/* Iterates that are kept are among those that are measured. */
+/* Kept iterates are among the measured ones. */
 static int check_measure(const study *s, const document *d, message *why) {
   const double keep = study_number(s, KEY_ITERATE_KEEP), measure = study_number(s, KEY_ITERATE_MEASURE);
   const sweep_entry *swept = sweep_over(s, KEY_ITERATE_MEASURE, -1);
@@ -169,13 +169,13 @@ static int check_counts(const study *s, const document *d, message *why) {
   return 0;
 }
 
-/* What goes along the last sweep needs one; windows lie between rising or falling values of it. */
+/* Keys that refer to the last sweep need one; windows need its values to be monotonic. */
 static int check_line(const study *s, const document *d, study_key key, message *why) {
   if (study_number(s, key) == 0)
     return 0;
   const int node = check_node_of_key(s, key);
   if (s->sweep_count == 0)
-    return document_refuse(d, node, why, "%s = true goes along the last sweep, and there is none", key->path);
+    return document_refuse(d, node, why, "%s = true refers to the last sweep, but the study has none", key->path);
   return 0;
 }
 
@@ -213,7 +213,7 @@ static int check_beyond(const study *s, const document *d, message *why) {
   return family_check(s, d, why);
 }
 
-/* A diagram has the sections of a family beyond grazing only. */
+/* Sections of a family are for diagrams with grazing.beyond only. */
 static int check_family(const study *s, const document *d, message *why) {
   static const char *const sections[] = {"branch", "orbit"};
   if (diagram_is_beyond(s))
@@ -234,7 +234,7 @@ bool diagram_wants(const study *s, const document *d, study_key key) {
   return key != KEY_ORBIT_PERIOD;
 }
 
-/* What diagrams and basins have in common. */
+/* Checks of both diagrams and basins. */
 static int check_iterates(const study *s, const document *d, message *why) {
   const int code = model_has(s, MODEL_MAP) ? check_start(s, d, why) : check_section(s, d, why);
   return code ? code : check_observed(s, d, why);

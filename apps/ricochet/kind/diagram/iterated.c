@@ -10,7 +10,7 @@
 
 #include "model/grazing_map.h"
 
-/* The library's clock, for trials of its variants. */
+/* The clock with which the library times its variants. */
 static double seconds(void *user) {
   struct timespec now;
   (void)user;
@@ -19,17 +19,17 @@ static double seconds(void *user) {
 }
 
 enum {
-  MAP_SLOTS = 64,       /* several vectors of values, so that one does not wait for another */
-  MAP_LANES = 33,       /* that keep their states for the period, in the widest variant, and one map's by itself */
+  MAP_SLOTS = 64,       /* several SIMD vectors, which hides latencies */
+  MAP_LANES = 33,       /* maps that keep states to find the period, in the widest variant, and one map alone */
   MOTION_BYTES = 65536, /* of a trajectory with its flow and tangent vectors, per number of the state, roughly */
-  WAIT_PERIODS = 100    /* of the force without an impact of the section, at least, before it is not met any more */
+  WAIT_PERIODS = 100    /* of the force without an impact on the section, at least, before the run fails */
 };
 
 size_t iterated_slots(const study *s) {
   return model_has(s, MODEL_MAP) ? MAP_SLOTS : 1;
 }
 
-/* Iterates that decide on the longest period of all tasks. */
+/* Iterates needed to test the longest period of all tasks. */
 static double deciding(const study *s, const study_values *v) {
   double limit = value_number(v, KEY_ITERATE_PERIOD_LIMIT, 0);
   for (size_t i = 0; i < study_sweeps(s); i++) {
@@ -178,7 +178,7 @@ void iterated_take(iterated *it, size_t slot, double *z) {
 
 /* --- a run -------------------------------------------------------------------------------------------------------- */
 
-/* What the library refuses to run has failed. */
+/* The outcome of a run that the library refuses is `failed`. */
 static void fail(const iterated *it, ric_attractor *a, const ric_error *error) {
   const ric_attractor_options *o = it->maps ? &it->maps[0].options : &it->options;
   a->kind = RIC_ATTRACTOR_FAILED;
@@ -209,7 +209,7 @@ static ric_status prepare(iterated *it, const ric_attractor_options *options, ri
   return ric_map_runner_create(it->size, options, it->lanes, &it->runner, error);
 }
 
-/* Those from `first` on that have the same options and can be run. @returns how many slots are done with */
+/* Runs the slots from `first` on that have the same options. @returns number of slots finished */
 static ric_status run_alike(iterated *it, size_t first, size_t count, ric_attractor *attractors, size_t *done) {
   const ric_grazing_map *maps[MAP_SLOTS];
   double d[MAP_SLOTS];

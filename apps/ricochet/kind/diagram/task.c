@@ -9,18 +9,18 @@
 
 struct worker {
   iterated it;
-  bool follows;              /* every task of a line starts where the one before it has ended */
+  bool follows;              /* iterate.follow: every task starts at the final state of the one before */
   size_t exponents;          /* numbers of them in a task */
   ric_attractor *attractors; /* [slots] */
   diagram_row *rows;         /* [slots] of them */
   double *starts;            /* [slots][size] */
-  double *before;            /* [size] where the last task has ended */
+  double *before;            /* [size] final state of the last task */
   double *found;             /* [slots][exponents] */
 };
 
 /* --- before the tasks --------------------------------------------------------------------------------------------- */
 
-enum { BATCH_BYTES = 64 << 20 /* of rows that wait for one another, unless one has more */ };
+enum { BATCH_BYTES = 64 << 20 /* of rows of a batch, unless one row has more */ };
 
 static size_t line_of(const study *s) {
   return study_sweeps(s) > 0 ? study_sweep_at(s, study_sweeps(s) - 1)->points : 1;
@@ -85,16 +85,16 @@ static int diagram_open(const study *s, ric_poll poll, worker **out, message *wh
   return code;
 }
 
-/* --- a motion beyond grazing beside what the return map says of it ----------------------------------------------- */
+/* --- a motion beyond grazing compared with the return map -------------------------------------------------------- */
 
-/* Numbers that are not known. */
+/* No comparison: all its numbers are NaN. */
 static void put_nothing(const iterated *it, diagram_row *row) {
   row->parameter = row->d = row->map_impacts = row->map_lyapunov = row->distance = NAN;
   for (size_t i = 0; row->map_values && i < it->options.keep; i++)
     row->map_values[i] = NAN;
 }
 
-/* Both sets are copied: the row keeps the order in which the iterates came. */
+/* Both sets are copied, because ric_attractor_distance sorts them. */
 static ric_status put_distance(diagram_row *row, size_t keep, ric_error *error) {
   double *both = calloc(2 * keep + 1, sizeof *both);
   if (!both)
@@ -125,7 +125,7 @@ static ric_status run_map(iterated *it, diagram_row *row, double *z, double *x, 
   return it->options.keep > 0 ? put_distance(row, it->options.keep, error) : RIC_OK;
 }
 
-/* Runs the map for the present task and says of the row, in which the attractor of the motion stands, what it finds.
+/* Runs the map for the current task and stores its attractor in the row beside that of the motion.
  * @param error  why there is no map, which the row may borrow as its reason
  * @returns RIC_OK, also where there is no map; RIC_ESTOPPED */
 static ric_status put_comparison(iterated *it, diagram_row *row, ric_error *error) {
@@ -137,7 +137,7 @@ static ric_status put_comparison(iterated *it, diagram_row *row, ric_error *erro
     return status;
   if (status != RIC_OK) {
     put_nothing(it, row);
-    if (!row->reason[0]) /* the motion's own comes first */
+    if (!row->reason[0]) /* a reason of the motion takes precedence */
       row->reason = error->message;
   }
   return RIC_OK;
@@ -145,8 +145,8 @@ static ric_status put_comparison(iterated *it, diagram_row *row, ric_error *erro
 
 /* --- tasks -------------------------------------------------------------------------------------------------------- */
 
-/* Takes a task into a slot, with its own start. */
-static void take(worker *w, const table *layout, uint64_t task, size_t slot, unsigned char *row) {
+/* Reads a task into a slot, with its own start. */
+static void read_task(worker *w, const table *layout, uint64_t task, size_t slot, unsigned char *row) {
   double *start = w->starts + slot * w->it.size;
   study_values_at(w->it.values, task);
   iterated_take(&w->it, slot, start);
@@ -154,7 +154,7 @@ static void take(worker *w, const table *layout, uint64_t task, size_t slot, uns
   w->rows[slot] = diagram_begin_row(layout, row, &w->attractors[slot]);
 }
 
-/* A task that has been run, into its row. */
+/* Stores a finished task in its row. */
 static ric_status put(worker *w, const table *rows, size_t slot, unsigned char *row) {
   diagram_row *found = &w->rows[slot];
   diagram_put_row(found, &w->attractors[slot]);
@@ -164,23 +164,23 @@ static ric_status put(worker *w, const table *rows, size_t slot, unsigned char *
   return status;
 }
 
-/* Tasks that do not know of one another. */
+/* Independent tasks. */
 static ric_status run_side_by_side(worker *w, const table *rows, task_range tasks, unsigned char *bytes) {
   for (uint64_t i = 0; i < tasks.count; i++)
-    take(w, rows, tasks.first + i, i, bytes + i * rows->row_bytes);
+    read_task(w, rows, tasks.first + i, i, bytes + i * rows->row_bytes);
   RIC_TRY(iterated_run(&w->it, tasks.count, w->attractors));
   for (uint64_t i = 0; i < tasks.count; i++)
     RIC_TRY(put(w, rows, i, bytes + i * rows->row_bytes));
   return RIC_OK;
 }
 
-/* A line of tasks of which each goes on from the one before it, unless that has come to nothing. */
+/* A line of tasks, each of which starts at the final state of the one before, unless that one has no attractor. */
 static ric_status run_in_turn(worker *w, const table *rows, task_range tasks, unsigned char *bytes) {
   const size_t start_bytes = w->it.size * sizeof *w->starts;
   bool goes_on = false;
   for (uint64_t i = 0; i < tasks.count; i++) {
     unsigned char *row = bytes + i * rows->row_bytes;
-    take(w, rows, tasks.first + i, 0, row);
+    read_task(w, rows, tasks.first + i, 0, row);
     if (goes_on)
       memcpy(w->starts, w->before, start_bytes);
     RIC_TRY(iterated_run(&w->it, 1, w->attractors));

@@ -1,4 +1,4 @@
-/* The keys of studies that follow a family of periodic motions: along what, and how they fit together. */
+/* The keys of studies that continue a family of periodic motions: its parameters, and checks that keys fit together. */
 #include "family_check.h"
 
 #include <math.h>
@@ -10,7 +10,7 @@
 #include "model/lattice_model.h"
 #include "study/number.h"
 
-/* Whether a normal mode is its first guess. */
+/* Whether the first guess is a normal mode. */
 static bool from_mode(const study *s) {
   return study_has(s, KEY_ORBIT_MODE);
 }
@@ -24,7 +24,7 @@ static const char *shown(double value, char *text, size_t size) {
   return text;
 }
 
-/* --- what is followed --- */
+/* --- parameters --- */
 
 static bool can_be_followed(study_key key) {
   return strncmp(key->path, "model.", 6) == 0 || key == KEY_ORBIT_PERIOD || key == KEY_ORBIT_ENERGY;
@@ -39,7 +39,7 @@ static parameter_use use_of(const study *s, study_key key) {
                          .node = study_value(s, key)->node};
 }
 
-/* Finds the number that a key names; it can be followed, and is not swept. */
+/* Finds the number that a key names; refuses one that cannot vary along a branch, or is swept. */
 static int find_parameter(const study *s, const document *d, study_key key, study_parameter *found, message *why) {
   const parameter_use use = use_of(s, key);
   const int code = parameter_find(s, d, &use, study_word(s, key), found, why);
@@ -49,11 +49,11 @@ static int find_parameter(const study *s, const document *d, study_key key, stud
     return document_refuse(d, use.node, why, "%s = %s cannot be followed, expected %s", use.label, found->name,
                            use.example);
   if (sweep_over(s, found->key, found->item))
-    return document_refuse(d, use.node, why, "%s = %s is swept, too, expected one of the two", use.label, found->name);
+    return document_refuse(d, use.node, why, "%s = %s is also swept, expected one of the two", use.label, found->name);
   return 0;
 }
 
-/* The values that the study gives for a parameter are ones that its key allows. */
+/* Refuses values for a parameter that its key does not allow. */
 static int check_values(const study *s, const document *d, const study_parameter *p, const study_key *keys,
                         size_t count, message *why) {
   int code = 0;
@@ -71,7 +71,7 @@ static double own_value(const study *s, const study_parameter *p) {
   return value->present ? value->numbers[p->item < 0 ? 0 : p->item] : -INFINITY;
 }
 
-/* The parameter starts where the branch does, and the branch, where it does not say, at the parameter's own value. */
+/* branch.from sets an omitted parameter; an omitted branch.from is the parameter's own value. */
 static int supply_start(study *s, const document *d, const study_parameter *p, message *why) {
   const parameter_use use = use_of(s, KEY_BRANCH_PARAMETER);
   if (study_has(s, KEY_BRANCH_FROM))
@@ -110,8 +110,7 @@ static int read_traced(study *s, const document *d, message *why) {
     return code;
   if (followed && found.key == followed->key && found.item == followed->item)
     return document_refuse(d, name->node, why,
-                           "branch.trace.parameter = %s is what the branch is followed along, expected another one",
-                           found.name);
+                           "branch.trace.parameter = %s is already branch.parameter, expected another one", found.name);
   study_move(s, KEY_BRANCH_TRACE_PARAMETER, &found, own_value(s, &found));
   code = check_values(s, d, &found, keys, sizeof keys / sizeof *keys, why);
   if (code || !followed)
@@ -140,7 +139,7 @@ static bool is_of_trace(study_key key) {
   return strncmp(key->path, "branch.trace.", 13) == 0;
 }
 
-/* Whether curves through its special points are wanted. */
+/* Whether the study asks for curves through special points. */
 static bool traces(const study *s) {
   for (size_t i = 0; i < s->schema->key_count; i++)
     if (is_of_trace(s->schema->keys[i]) && s->values[i].node)
@@ -148,7 +147,7 @@ static bool traces(const study *s) {
   return false;
 }
 
-/* A period that follows from the force, or from a normal mode, is not given. */
+/* The period is not required if the force or a normal mode gives it. */
 bool family_wants(const study *s, const document *d, study_key key) {
   (void)d;
   if (key == KEY_ORBIT_PERIOD)
@@ -158,7 +157,7 @@ bool family_wants(const study *s, const document *d, study_key key) {
 
 /* --- its range and its steps --- */
 
-/* Where a bound stands; of a start that is the study's own value, the name of the parameter. */
+/* Node of a bound; of an omitted start that of branch.parameter. */
 static int node_of_bound(const study *s, study_key key) {
   return study_value(s, key)->node ? study_value(s, key)->node : study_value(s, KEY_BRANCH_PARAMETER)->node;
 }
@@ -175,13 +174,13 @@ static int check_log(const study *s, const document *d, message *why) {
   return 0;
 }
 
-/* Whether the branch starts at the energy of a motion that is found by its period. */
+/* Whether the branch starts at the energy of the motion with the given period. */
 static bool starts_at_period(const study *s) {
   return follows_key(s, KEY_ORBIT_ENERGY) && !study_has(s, KEY_BRANCH_FROM);
 }
 
-/* Whether it does at that of a mode which touches the obstacle of the particle that is hit. */
-static bool starts_at_touch(const study *s) {
+/* Whether it starts at the energy at which a mode grazes the obstacle of the particle in orbit.at_start. */
+static bool starts_at_grazing_mode(const study *s) {
   return from_mode(s) && starts_at_period(s) && motion_is(s, "even") &&
          study_value(s, KEY_ORBIT_AT_START)->count == 1 && study_value(s, KEY_ORBIT_AT_HALF)->count == 0 &&
          study_value(s, KEY_ORBIT_SEQUENCE)->count == 0;
@@ -193,14 +192,14 @@ static int check_from(const study *s, const document *d, message *why) {
   if (!starts_at_period(s))
     return document_refuse(d, study_value(s, KEY_BRANCH_PARAMETER)->node, why,
                            "missing key branch.from (a number): %s has no value of its own", family_followed(s)->name);
-  if (from_mode(s) && !starts_at_touch(s))
+  if (from_mode(s) && !starts_at_grazing_mode(s))
     return document_refuse(d, study_value(s, KEY_BRANCH_PARAMETER)->node, why,
-                           "missing key branch.from (a number): at which energy the branch starts, which orbit.mode "
-                           "does not say");
+                           "missing key branch.from (a number), the energy at the start: orbit.mode does not give "
+                           "it");
   return 0;
 }
 
-/* Of a start that only the run tells: what can be said of the bounds without it. */
+/* Checks of the bounds that do not need the start, if only the run finds it. */
 static int check_bounds(const study *s, const document *d, message *why) {
   const study_key low = KEY_BRANCH_LOW, high = KEY_BRANCH_HIGH;
   char small[32], large[32];
@@ -211,7 +210,7 @@ static int check_bounds(const study *s, const document *d, message *why) {
                          shown(study_number(s, high), large, sizeof large));
 }
 
-/* The start lies within the bounds, with room on one side. */
+/* The start must be within the bounds, and not equal to both. */
 static int check_range(const study *s, const document *d, message *why) {
   const double to = study_number(s, KEY_BRANCH_TO), from = study_number(s, KEY_BRANCH_FROM);
   const double low = study_has(s, KEY_BRANCH_LOW) ? study_number(s, KEY_BRANCH_LOW) : fmin(from, to);
@@ -222,14 +221,14 @@ static int check_range(const study *s, const document *d, message *why) {
     return check_bounds(s, d, why);
   if (from == to)
     return document_refuse(d, study_value(s, KEY_BRANCH_TO)->node, why,
-                           "branch.to = %s is where the branch starts, expected another value", start);
+                           "branch.to = %s is the start of the branch, expected another value", start);
   if (!(low <= from))
     return document_refuse(d, study_value(s, KEY_BRANCH_LOW)->node, why,
-                           "branch.low = %s leaves out the start, expected at most branch.from = %s",
+                           "branch.low = %s is above the start, expected at most branch.from = %s",
                            shown(low, bound, sizeof bound), start);
   if (!(high >= from))
     return document_refuse(d, study_value(s, KEY_BRANCH_HIGH)->node, why,
-                           "branch.high = %s leaves out the start, expected at least branch.from = %s",
+                           "branch.high = %s is below the start, expected at least branch.from = %s",
                            shown(high, bound, sizeof bound), start);
   if (!(low < high))
     return document_refuse(d, study_value(s, study_has(s, KEY_BRANCH_LOW) ? KEY_BRANCH_LOW : KEY_BRANCH_HIGH)->node,
@@ -237,7 +236,7 @@ static int check_range(const study *s, const document *d, message *why) {
   return check_log(s, d, why);
 }
 
-/* Steps that are given do not contradict each other. */
+/* Given steps must not decrease. */
 static int check_rising(const study *s, const document *d, const study_key *rising, size_t count, message *why) {
   char small[32], large[32];
   for (size_t i = 0; i < count; i++)
@@ -264,7 +263,7 @@ static int check_trace_range(const study *s, const document *d, message *why) {
   shown(start, own, sizeof own);
   if (!(start > -INFINITY))
     return document_refuse(d, study_value(s, KEY_BRANCH_TRACE_PARAMETER)->node, why,
-                           "branch.trace.parameter = %s has no value at which curves begin, expected a number",
+                           "branch.trace.parameter = %s is null in the study, expected a number: curves start there",
                            p->name);
   if (!(low < high))
     return document_refuse(d, study_value(s, KEY_BRANCH_TRACE_LOW)->node, why,
@@ -272,11 +271,11 @@ static int check_trace_range(const study *s, const document *d, message *why) {
                            shown(low, bound, sizeof bound), shown(high, own, sizeof own));
   if (!(low <= start))
     return document_refuse(d, study_value(s, KEY_BRANCH_TRACE_LOW)->node, why,
-                           "branch.trace.low = %s leaves out where curves begin, expected at most %s = %s",
+                           "branch.trace.low = %s is above the start of curves, expected at most %s = %s",
                            shown(low, bound, sizeof bound), p->name, own);
   if (!(high >= start))
     return document_refuse(d, study_value(s, KEY_BRANCH_TRACE_HIGH)->node, why,
-                           "branch.trace.high = %s leaves out where curves begin, expected at least %s = %s",
+                           "branch.trace.high = %s is below the start of curves, expected at least %s = %s",
                            shown(high, bound, sizeof bound), p->name, own);
   return 0;
 }
@@ -306,16 +305,16 @@ static int check_trace(const study *s, const document *d, message *why) {
 
 /* --- its motion --- */
 
-/* The key of the branch that names this one as what moves; NULL for none. */
-static study_key mover_of(const study *s, study_key key) {
+/* The key that names this one as a continuation parameter; NULL for none. */
+static study_key naming_key_of(const study *s, study_key key) {
   if (follows_key(s, key))
     return KEY_BRANCH_PARAMETER;
   return family_traced(s) && family_traced(s)->key == key ? KEY_BRANCH_TRACE_PARAMETER : NULL;
 }
 
-/* A key that has its default wherever the motion is of this kind: it is not given another value, swept or moved. */
+/* Refuses a key, given, swept or continued, whose default this kind of motion needs. */
 static int check_need(const study *s, const document *d, study_key key, message *why) {
-  const study_key mover = mover_of(s, key);
+  const study_key naming = naming_key_of(s, key);
   char label[128], value[32] = "null";
   double other;
   const int node = check_find_other(s, d, key, label, sizeof label, &other);
@@ -326,9 +325,9 @@ static int check_need(const study *s, const document *d, study_key key, message 
   if (node)
     return document_refuse(d, node, why, "%s = %s, but orbit.motion: %s needs %s = %s", label, value,
                            study_word(s, KEY_ORBIT_MOTION), key->path, key->fallback);
-  if (mover)
-    return document_refuse(d, study_value(s, mover)->node, why, "%s = %s, but orbit.motion: %s needs %s = %s",
-                           mover->path, study_word(s, mover), study_word(s, KEY_ORBIT_MOTION), key->path,
+  if (naming)
+    return document_refuse(d, study_value(s, naming)->node, why, "%s = %s, but orbit.motion: %s needs %s = %s",
+                           naming->path, study_word(s, naming), study_word(s, KEY_ORBIT_MOTION), key->path,
                            key->fallback);
   return 0;
 }
@@ -344,7 +343,7 @@ static bool has_hertz(const study *s) {
   return study_has(s, KEY_MODEL_HERTZ);
 }
 
-/* What a kind of motion asks of the model: no losses, no force, a force that runs backwards as it runs forwards. */
+/* What a kind of motion needs of the model: no losses, no force, or a force that is even in time. */
 static int check_model(const study *s, const document *d, message *why) {
   static const study_key lossless[] = {KEY_MODEL_DAMPING, KEY_MODEL_LINK_DAMPING, KEY_MODEL_RESTITUTION};
   static const study_key even[] = {KEY_MODEL_PHASE}, free_of_force[] = {KEY_MODEL_FORCE};
@@ -364,17 +363,17 @@ static int refuse_key(const study *s, const document *d, study_key key, message 
 }
 
 static bool gives_energy(const study *s) {
-  return study_has(s, KEY_ORBIT_ENERGY) || mover_of(s, KEY_ORBIT_ENERGY);
+  return study_has(s, KEY_ORBIT_ENERGY) || naming_key_of(s, KEY_ORBIT_ENERGY);
 }
 
-/* Which number says how long the motion takes. */
+/* Exactly one key must determine the period: orbit.period, orbit.energy or orbit.forcing_periods. */
 static int check_given(const study *s, const document *d, message *why) {
   const bool even = motion_is(s, "even"), conservative = motion_is(s, "conservative");
-  const study_key mover = mover_of(s, KEY_ORBIT_PERIOD);
+  const study_key naming = naming_key_of(s, KEY_ORBIT_PERIOD);
   const bool energy = gives_energy(s), multiple = study_has(s, KEY_ORBIT_FORCING_PERIODS);
-  if (mover && (energy || multiple || !(even || conservative)))
-    return document_refuse(d, study_value(s, mover)->node, why,
-                           "%s = orbit.period, but %s decides about the period, expected another one", mover->path,
+  if (naming && (energy || multiple || !(even || conservative)))
+    return document_refuse(d, study_value(s, naming)->node, why,
+                           "%s = orbit.period, but %s determines the period, expected another one", naming->path,
                            energy     ? "orbit.energy"
                            : multiple ? "orbit.forcing_periods"
                                       : study_word(s, KEY_ORBIT_MOTION));
@@ -382,10 +381,10 @@ static int check_given(const study *s, const document *d, message *why) {
     return document_refuse(d,
                            follows_key(s, KEY_ORBIT_ENERGY) ? study_value(s, KEY_BRANCH_PARAMETER)->node
                                                             : check_node_of_key(s, KEY_ORBIT_ENERGY),
-                           why, "orbit.energy, but orbit.motion is %s: it can be given of even and conservative ones",
+                           why, "orbit.energy, but orbit.motion is %s: expected even or conservative",
                            study_word(s, KEY_ORBIT_MOTION));
   if (multiple && (conservative || motion_is(s, "autonomous")))
-    return refuse_key(s, d, KEY_ORBIT_FORCING_PERIODS, why, "it has no force");
+    return refuse_key(s, d, KEY_ORBIT_FORCING_PERIODS, why, "expected even or forced");
   if (multiple && study_value(s, KEY_ORBIT_PERIOD)->present)
     return document_refuse(d, check_node_of_key(s, KEY_ORBIT_FORCING_PERIODS), why,
                            "orbit.forcing_periods and orbit.period both give the period, expected one of the two");
@@ -403,7 +402,7 @@ static int check_sequence(const study *s, const document *d, message *why) {
                            sequence->count);
   if (sequence->count > 0 && has_hertz(s))
     return document_refuse(d, sequence->node, why,
-                           "orbit.sequence, but with model.hertz nothing jumps, expected no impacts");
+                           "orbit.sequence, but contacts with model.hertz are not impacts, expected an empty list");
   for (size_t i = 0; i < sequence->count; i++) {
     const int code = lattice_check_particle(s, d, KEY_ORBIT_SEQUENCE, i, why);
     const size_t particle = (size_t)sequence->numbers[i];
@@ -415,7 +414,7 @@ static int check_sequence(const study *s, const document *d, message *why) {
                              particle);
     if (i > 0 && !(times->numbers[i] >= times->numbers[i - 1]) && !sweep_over(s, KEY_ORBIT_TIMES, (long)i))
       return document_refuse(d, typed_item_node(d, times, i), why,
-                             "orbit.times[%zu] lies before orbit.times[%zu], expected rising times", i, i - 1);
+                             "orbit.times[%zu] is smaller than orbit.times[%zu], expected ascending times", i, i - 1);
   }
   return 0;
 }
@@ -444,8 +443,8 @@ static int check_mode(const study *s, const document *d, message *why) {
     return 0;
   if (!gives_energy(s))
     return document_refuse(d, node, why,
-                           "orbit.mode without an energy, which gives its amplitude: expected orbit.energy, or a "
-                           "branch along it");
+                           "orbit.mode needs an energy for its amplitude, expected orbit.energy, or a branch along "
+                           "it");
   int code = check_one_mode(s, d, node, "orbit.mode", study_number(s, KEY_ORBIT_MODE), why);
   for (size_t i = 0; e && i < e->view.points && !code; i++)
     code = check_one_mode(s, d, sweep_value_node(d, e, i), "swept orbit.mode", e->values[i], why);
@@ -453,11 +452,11 @@ static int check_mode(const study *s, const document *d, message *why) {
 }
 
 static int check_swings(const study *s, const document *d, message *why) {
-  if (!study_value(s, KEY_ORBIT_SWINGS)->node || starts_at_touch(s))
+  if (!study_value(s, KEY_ORBIT_SWINGS)->node || starts_at_grazing_mode(s))
     return 0;
   return document_refuse(
       d, study_value(s, KEY_ORBIT_SWINGS)->node, why,
-      "orbit.swings counts those of orbit.mode between impacts: expected orbit.mode, one particle in "
+      "orbit.swings counts periods of orbit.mode between impacts: expected orbit.mode, one particle in "
       "orbit.at_start, and a branch along orbit.energy without branch.from");
 }
 
@@ -466,7 +465,7 @@ static int refuse_two_guesses(const study *s, const document *d, study_key key, 
                          key->path, start ? "does the section start" : "do the impacts");
 }
 
-/* One guess to begin with. */
+/* Exactly one first guess. */
 static int check_guess(const study *s, const document *d, message *why) {
   const int start = check_node_of_section(s, d, "start");
   const bool excited = study_value(s, KEY_ORBIT_EXCITED)->count > 0, forced = motion_is(s, "forced");
@@ -477,13 +476,13 @@ static int check_guess(const study *s, const document *d, message *why) {
                       "expected the impacts in orbit.sequence");
   if (mode && study_value(s, KEY_ORBIT_PERIOD)->present)
     return document_refuse(d, check_node_of_key(s, KEY_ORBIT_PERIOD), why,
-                           "orbit.period, but orbit.mode brings its own, expected one of them");
+                           "orbit.period and orbit.mode both give a period, expected one of them");
   if (mode && excited)
     return document_refuse(d, check_node_of_key(s, KEY_ORBIT_MODE), why,
                            "orbit.mode gives a first guess, and so does orbit.excited, expected one of them");
-  if (starts_at_touch(s) && !start)
+  if (starts_at_grazing_mode(s) && !start)
     return has_hertz(s) ? document_refuse(d, check_node_of_key(s, KEY_ORBIT_MODE), why,
-                                          "orbit.mode with orbit.at_start: the mode touches a rigid obstacle, "
+                                          "orbit.mode with orbit.at_start: the mode grazes a rigid obstacle, "
                                           "expected model.hertz = null")
                         : 0;
   if ((excited || mode) && (start || listed))

@@ -310,7 +310,7 @@ void family_task_close(family_task *t) {
 
 /* --- the first guess --- */
 
-/* A state that the study gives, or rest. */
+/* The initial state that the study gives, or rest. */
 static void read_state(family_task *t) {
   for (size_t i = 0; i < particles_of(t->values); i++) {
     t->guess.q[i] = t->from_state ? value_of_particle(t->values, KEY_START_Q, i) : 0;

@@ -1,5 +1,4 @@
-/* What tasks that follow a family have in common, of kinds `branch` and `grazing`: the values of the task, its family
- * and where it starts. */
+/* The state of a task that continues a family (kinds `branch` and `grazing`): its values, its family and its start. */
 #ifndef RICOCHET_APP_FAMILY_TASK_H
 #define RICOCHET_APP_FAMILY_TASK_H
 
@@ -33,8 +32,8 @@ typedef struct family_task {
   study_values *values;
   ric_poll poll;
   branch_family family;
-  ric_guess guess; /* first guess of the present task */
-  bool from_state; /* the study gives a state to start from */
+  ric_guess guess; /* first guess of the current task */
+  bool from_state; /* whether the study gives an initial state */
 } family_task;
 
 /** @param task  family_task_clear also after a refusal  @returns 0, or EXIT_RUN without memory */
@@ -45,8 +44,8 @@ void family_task_clear(family_task *task);
  *  to the motion of the period, the equations of that one in place of the family.
  *  @returns what the library refuses: as ric_family_create, RIC_EINVAL for impacts without an obstacle */
 ric_status family_task_open(family_task *task, ric_error *error);
-/** Finds the first guess (guess.h), and where the study does not say where its family starts, the energy at which it
- *  does. The guess is the state of the section `start`, or of orbit.excited, orbit.mode, orbit.at_start and at_half;
+/** Finds the first guess (guess.h), and the energy at which the family starts if the study does not give it. The guess
+ *  is the state of the section `start`, or of orbit.excited, orbit.mode, orbit.at_start and at_half;
  *  else rest.
  *  @returns as the functions of guess.h and ric_family_create; RIC_EINVAL for an energy that has no logarithm or lies
  *           outside the bounds of the study */
@@ -58,11 +57,11 @@ void family_task_close(family_task *task);
  *  @returns as ric_family_start */
 ric_status family_task_solve(const family_task *task, double *z, double *parameter, int *iterations, ric_error *error);
 
-/** A study of one task says at once what would be its only row: that the library refuses it. @returns 0 or EXIT_USAGE
- */
+/** Refuses a study of one task if the library refuses that task, so that no result is written for it.
+ *  @returns 0 or EXIT_USAGE */
 int family_task_check(const study *s, message *why);
 
-/** Bytes that a rank computes with. */
+/** Working memory of a rank in bytes. */
 double family_task_bytes(const study_values *v);
 
 #endif

@@ -1,4 +1,4 @@
-/* What `show` says of the first tasks of a result of kind `grazing`, in sentences. */
+/* What `show` prints about the first tasks of a result of kind `grazing`, in sentences. */
 #include "grazing.h"
 
 #include <inttypes.h>
@@ -14,12 +14,12 @@ enum {
   MULTIPLIERS_SHOWN = 4,
   COEFFICIENTS_SHOWN = 6,
   WINDOWS_SHOWN = 6,
-  DIGITS = 6,        /* of what explains */
+  DIGITS = 6,        /* of explanations */
   DIGITS_WHERE = 12, /* of parameters */
   TEXT = 320
 };
 
-/* A card on its way: the first failure to read is kept, and nothing is read after it. */
+/* The state of a card: after the first failure nothing more is read. */
 typedef struct card {
   const file_place *at;
   const reader_group *sweep, *group;
@@ -68,7 +68,7 @@ static unsigned char *row_of(card *k, const char *name, reader_type type, const 
   return values;
 }
 
-/* Of a complex number that is real, the real part. */
+/* A real value is printed without its imaginary part. */
 static void print_value(const reader_set *s, const unsigned char *value, const char *before) {
   char text[TEXT], imaginary[TEXT];
   reader_part(s, value, reader_parts(s) - 1, DIGITS, imaginary, sizeof imaginary);

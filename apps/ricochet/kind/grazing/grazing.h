@@ -5,13 +5,13 @@
 #include "kind/family/curve_trace.h"
 #include "kind/kind.h"
 
-/** Tails, where the study asks for curves in two parameters: their points and how they ended. */
+/** Ragged tables of studies with `branch.trace`: the points of curves and how these ended. */
 enum { GRAZING_CURVES, GRAZING_CURVE_ENDS, GRAZING_TAILS };
 
 #define GRAZING_OUTCOME_LIST(X)                                                                                        \
   X(GRAZING_FOUND, "grazing")                                                                                          \
-  X(GRAZING_NONE, "none")             /* the family has reached its end without touching an obstacle */                \
-  X(GRAZING_DEGENERATE, "degenerate") /* it grazes in a way that the theory leaves out */                              \
+  X(GRAZING_NONE, "none")             /* the family ended without a grazing point */                                   \
+  X(GRAZING_DEGENERATE, "degenerate") /* a grazing point that the theory does not cover */                             \
   X(GRAZING_FAILED, "failed")         /* the family, or what follows from its grazing point, cannot be computed */     \
   X(GRAZING_FAILED_START, "failed_start")                                                                              \
   X(GRAZING_REFUSED, "refused")
@@ -42,12 +42,12 @@ double grazing_coordinates(const study_values *v);
 /** The columns of its tables (kind.h). */
 extern const column_list grazing_lists[];
 
-/** Lays out the row and the tails.
+/** Lays out the row and the ragged tables.
  *  @param followed  name of the parameter, borrowed; @param traced  that of the second one, borrowed; NULL without
  *                   curves */
 void grazing_lay_out(const study_values *v, const char *followed, const char *traced, kind_plan *plan);
 
-/** A row: the members that its columns name. What has several values is filled in its place. */
+/** A row: the members that its columns name. Members with several values point into the row. */
 typedef struct grazing_row {
   int outcome;
   const char *reason;
@@ -72,10 +72,10 @@ typedef struct grazing_row {
   double *predicted_border_d, *predicted_flip_d;
 } grazing_row;
 
-/** Fills a row with what stands for nothing: NaN, -1, `none`. @returns its struct */
+/** Fills a row with missing values: NaN, -1, `none`. @returns its struct */
 grazing_row grazing_clear_row(const table *t, unsigned char *row);
 
-/** A task on its way. */
+/** The state of a task. */
 typedef struct grazing_task {
   branch_family *b;
   const kind_plan *plan;
@@ -86,19 +86,19 @@ typedef struct grazing_task {
   ric_grazing grazing; /* initialised, and set by grazing_find */
 } grazing_task;
 
-/** Notes an outcome with the reason of an error.
- *  @returns RIC_OK, or the status that no row stands for: RIC_ESTOPPED, RIC_ENOMEM */
+/** Sets the outcome with the reason of an error.
+ *  @returns RIC_OK; RIC_ESTOPPED and RIC_ENOMEM are returned without an outcome */
 ric_status grazing_end(grazing_task *task, grazing_outcome outcome, ric_status status, const ric_error *error);
 
-/** Follows the family from its start until it grazes, and writes the grazing point into the row.
+/** Continues the family from its start to its first grazing point, and writes that into the row.
  *  @param z  [unknowns] changed
- *  @returns RIC_OK, also where there is none, as the outcome says; RIC_ESTOPPED, RIC_ENOMEM */
+ *  @returns RIC_OK, also if there is none (see the outcome); RIC_ESTOPPED, RIC_ENOMEM */
 ric_status grazing_find(grazing_task *task, double *z, double parameter);
 
 /** Writes the coefficients on the study's section, the verdict and the windows into the row. @returns as above */
 ric_status grazing_judge(grazing_task *task);
 
-/** Follows the grazing point in two parameters and adds the points to the tails. @returns as above */
+/** Continues the grazing point in two parameters and adds the points to the ragged tables. @returns as above */
 ric_status grazing_trace(grazing_task *task, records *tails);
 
 /** What `show` says of a result (kind.h). */

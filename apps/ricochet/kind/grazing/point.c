@@ -1,4 +1,4 @@
-/* The grazing point of a task, and what follows there. */
+/* The grazing point of a task: its coefficients, verdict and windows. */
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -9,7 +9,7 @@
 
 /* --- the point in two parameters --- */
 
-/* A point: what the kind adds to those of any curve. */
+/* Adds the kind's own columns to a point of a curve. */
 static int add_curve_point(const ric_grazing_curve_point *point, void *user) {
   const ric_grazing *g = point->grazing;
   const ric_grazing_criterion *k = point->criterion;
@@ -49,17 +49,17 @@ ric_status grazing_end(grazing_task *g, grazing_outcome outcome, ric_status stat
 
 /* --- the point ---------------------------------------------------------------------------------------------------- */
 
-/* Writes what is known into the row, after which nothing outside it is referred to. */
+/* Stores the values in the row; pointers then point into the row only. */
 static void keep(grazing_task *g) {
   row_store(&g->plan->rows, g->row, &g->found);
   row_load(&g->plan->rows, g->row, &g->found);
 }
 
 static void put_obstacle(grazing_task *g, size_t obstacle) {
-  const ric_obstacle *touched = &g->b->model.obstacles[obstacle];
+  const ric_obstacle *grazed = &g->b->model.obstacles[obstacle];
   g->found.obstacle = (long long)obstacle;
-  g->found.particle = (long long)touched->coordinate;
-  g->found.side = touched->side > 0 ? 0 : 1;
+  g->found.particle = (long long)grazed->coordinate;
+  g->found.side = grazed->side > 0 ? 0 : 1;
 }
 
 static void put_when(grazing_task *g, double parameter, double period, double time) {
@@ -69,7 +69,7 @@ static void put_when(grazing_task *g, double parameter, double period, double ti
   g->found.phase = time / period;
 }
 
-/* Per change of the study's parameter, of which the family's own may be the logarithm. */
+/* By the study's parameter; the family's own may be its logarithm. */
 static double slope_of(const grazing_task *g) {
   return g->grazing.slope / (g->b->log ? branch_family_value(g->b, g->grazing.parameter) : 1);
 }
@@ -90,7 +90,7 @@ static void put_point(grazing_task *g) {
 static const grazing_outcome outcomes[RIC_GRAZING_SEARCH_OUTCOMES] = {GRAZING_FOUND, GRAZING_NONE, GRAZING_DEGENERATE,
                                                                       GRAZING_FAILED, GRAZING_FAILED_START};
 
-/* The family has come to its end: in the study's parameter. */
+/* Reason for no grazing point: the end of the family, in the study's parameter. */
 static void put_end(grazing_task *g, double from, const ric_grazing_search *found) {
   snprintf(g->reason, sizeof g->reason,
            "no obstacle is touched from %s = %.9g to %.9g, where the family ends: %s%s%.60s", g->b->followed->name,
@@ -110,7 +110,7 @@ ric_status grazing_find(grazing_task *g, double *z, double parameter) {
     return RIC_OK;
   }
   snprintf(g->reason, sizeof g->reason, "%.*s", GRAZING_REASON_BYTES - 1, found.reason);
-  if (found.obstacle < SIZE_MAX) { /* what the family says of a point that cannot be made exact */
+  if (found.obstacle < SIZE_MAX) { /* the point of the family, which could not be refined */
     put_when(g, found.parameter, found.period, found.time);
     put_obstacle(g, found.obstacle);
     keep(g);
@@ -148,7 +148,7 @@ static void put_criterion(grazing_task *g, const ric_grazing_criterion *k) {
   keep(g);
 }
 
-/* All of them, whatever time or energy make of some. */
+/* All eigenvalues of L, trivial ones included. */
 static ric_status put_multipliers(const grazing_task *g, const ric_grazing_map *map, ric_error *error) {
   ric_multipliers found;
   RIC_TRY(ric_multipliers_init(&found, map->size, error));
@@ -172,7 +172,7 @@ static void put_edges(const grazing_task *g, const ric_grazing_window *window, s
   r->window_high_kind[i] = (unsigned char)window->high.kind;
 }
 
-/* A period without a window is one without orbits that are admissible and stable, or whose equations are singular. */
+/* No window: no orbit of this period is admissible and stable, or its equations are singular. */
 static ric_status put_window(const grazing_task *g, const ric_grazing_map *map, const ric_grazing_criterion *k,
                              size_t period, ric_error *error) {
   const grazing_row *r = &g->found;

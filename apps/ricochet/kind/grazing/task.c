@@ -1,5 +1,4 @@
-/* kind: grazing. Where a family of periodic motions first touches an obstacle, and what follows there, at every grid
- * point. */
+/* kind: grazing. The first grazing point of a family of periodic motions, and its bifurcation, at every grid point. */
 #include "grazing.h"
 
 #include <stdlib.h>
@@ -26,13 +25,13 @@ static int grazing_open(const study *s, ric_poll poll, worker **out, message *wh
   if (!w)
     return refuse(why, EXIT_RUN, "%s: no memory for a task", study_name(s));
   const int code = family_task_init(&w->task, s, poll, why);
-  w->task.family.multipliers = false; /* those of L tell */
+  w->task.family.multipliers = false; /* the multipliers of L are used instead */
   if (code)
     grazing_close(out);
   return code;
 }
 
-/* Besides the row and what the family takes, matrices of the criterion and of the orbits of the map. */
+/* The row, the family, and matrices of the criterion and of the orbits of the map. */
 static double bytes_of(const study_values *v, const table *rows) {
   const double c = grazing_coordinates(v);
   return family_task_bytes(v) + table_row_bytes(rows) + 8 * 12 * c * c;
@@ -86,7 +85,7 @@ static ric_status compute(family_task *t, grazing_task *g, records *tails) {
 static void finish_row(grazing_task *g) {
   g->found.outcome = (int)g->outcome;
   g->found.reason = g->reason;
-  if (g->outcome == GRAZING_DEGENERATE) { /* what follows there is not known, and why not is */
+  if (g->outcome == GRAZING_DEGENERATE) { /* no criterion, for the same reason */
     g->found.verdict = RIC_GRAZING_UNDECIDED;
     g->found.verdict_reason = g->reason;
   }
@@ -104,7 +103,7 @@ static int grazing_evaluate(worker *w, const kind_plan *plan, task_range tasks, 
   family_task_close(&w->task);
   if (status == RIC_ESTOPPED)
     return -1;
-  if (status != RIC_OK) { /* of a task that does not fit, nothing is kept */
+  if (status != RIC_OK) { /* out of memory: all records of the task are dropped */
     for (size_t k = 0; k < plan->tail_count; k++)
       records_cut(&tails[k], before[k]);
     g.found = grazing_clear_row(&plan->rows, row);
@@ -116,7 +115,7 @@ static int grazing_evaluate(worker *w, const kind_plan *plan, task_range tasks, 
 
 /* --- its keys --- */
 
-/* The return map beside grazing is that of motions which are solved for over a whole period. */
+/* The return map needs motions that are solved for over a whole period. */
 static int grazing_complete(study *s, const document *d, message *why) {
   static const char text[] = "orbit.motion = even, but kind: grazing needs forced, conservative or autonomous motions";
   const int node = check_node_of_key(s, KEY_ORBIT_MOTION);

@@ -32,7 +32,7 @@ extern const column_list orbits_lists[], orbits_special_lists[];
 /** Lays out the row. */
 void orbits_lay_out(const study_values *v, table *t);
 
-/** The result of a verification without an answer: `run_failed` with the error's message.
+/** The result of a verification that could not be run: `run_failed` with the error's message.
  *  @returns RIC_OK or RIC_ESTOPPED */
 ric_status orbits_verified(ric_status status, const ric_error *error, ric_verification *verification);
 

@@ -1,5 +1,5 @@
-/* kind: orbits, by shooting: the motion with the given impacts at every grid point, also of nonlinear models, and what
- * Ritz's method makes of it. */
+/* kind: orbits, by shooting: the motion with the given impacts at every grid point, also of nonlinear models, and its
+ * approximation by Ritz's method. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -12,7 +12,7 @@
 #include "stability.h"
 #include "kind/trajectory/trajectory.h"
 
-/* Ritz's approximation of the present task. */
+/* Ritz's approximation in the current task. */
 typedef struct ritz_found {
   size_t functions; /* 0: none */
   double frequency, error, error_v, defect;
@@ -26,7 +26,7 @@ struct worker {
   size_t *hits; /* [impacts] obstacles of orbit.at_start, then those of at_half */
   size_t starts, halves;
   ric_guess guess;
-  ric_system *system; /* of the present task, as what follows */
+  ric_system *system; /* of the current task, as the members below */
   ric_shooting *shooting;
   double *z; /* [particles] its unknowns */
   ric_orbit orbit;
@@ -151,7 +151,7 @@ static ric_status solve(worker *w, double period, ric_error *error) {
   return ric_shooting_orbit(w->shooting, w->z, period, &w->orbit, error);
 }
 
-/* --- what else is said of it --- */
+/* --- verification and approximation --- */
 
 /* @returns RIC_OK or RIC_ESTOPPED */
 static ric_status verify(worker *w) {
@@ -208,7 +208,7 @@ static ric_status approximate(worker *w) {
 
 /* --- a task --- */
 
-/* What is violated; else what the verifier says; else what Ritz's method does. */
+/* The reason: of the orbit, else of the verifier, else of Ritz's method. */
 static const char *reason_of(const worker *w) {
   if (w->orbit.reason[0])
     return w->orbit.reason;

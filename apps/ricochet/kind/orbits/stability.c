@@ -17,8 +17,8 @@ int stability_check(const study *s, const study_values *v, message *why) {
                 RIC_REDUCED_PARTICLES);
 }
 
-/* The reduced method has a few n x n matrices, the other one what it keeps of every mode and of its response at the
- * impacts; measured up to n = 10^5. */
+/* The reduced method needs a few n x n matrices, the other one data of every mode and of its response at the impacts;
+ * measured up to n = 10^5. */
 double stability_bytes(const study_values *v) {
   const double n = value_number(v, KEY_MODEL_PARTICLES, 0);
   const double m = (double)(value_count(v, KEY_ORBIT_AT_START) + value_count(v, KEY_ORBIT_AT_HALF));

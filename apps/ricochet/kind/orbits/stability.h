@@ -20,7 +20,7 @@ bool stability_wanted(const study_values *v);
 /** Refuses `orbit.multipliers` for chains that are too long for it. @returns 0 or EXIT_USAGE */
 int stability_check(const study *s, const study_values *v, message *why);
 
-/** Bytes that a rank takes for it, as a number that cannot overflow. */
+/** Its memory on a rank in bytes; a double, which cannot overflow. */
 double stability_bytes(const study_values *v);
 
 /** Attributes that say how the verdict was found. */
@@ -29,7 +29,7 @@ void stability_put_tolerances(table *t);
 ric_status stability_init(stability *s, const study_values *v, ric_poll poll, ric_error *error);
 void stability_clear(stability *s);
 
-/** Multipliers of a solved orbit; what the library refuses is `unknown`, with its message.
+/** Multipliers of a solved orbit; a refusal of the library gives `unknown` with its message.
  *  @param pattern  NULL when there is none: then the orbit is `failed`
  *  @returns RIC_OK or RIC_ESTOPPED */
 ric_status stability_find(stability *s, ric_orbit_solver *solver, const ric_chain *chain, const ric_pattern *pattern,

@@ -22,7 +22,7 @@ struct worker {
   ric_orbit orbit;
   int verifies;
   ric_verify_options verify;
-  ric_verification verification; /* of the present task's orbit */
+  ric_verification verification; /* of the orbit of the current task */
   stability stability;
 };
 
@@ -140,7 +140,7 @@ static ric_status solve(worker *w, ric_error *error) {
                          &w->orbit, error);
 }
 
-/* An event-driven run decides about an orbit that seems to be one. @returns RIC_OK or RIC_ESTOPPED */
+/* Verifies an admissible or grazing orbit by an event-driven run. @returns RIC_OK or RIC_ESTOPPED */
 static ric_status verify(worker *w) {
   ric_error error = {0};
   w->verification = (ric_verification){.result = RIC_NOT_RUN, .closure_error = NAN};
@@ -150,7 +150,7 @@ static ric_status verify(worker *w) {
                          &error, &w->verification);
 }
 
-/* What the verifier says has its place where the orbit itself leaves nothing to say. */
+/* The reason of the verifier is stored if the orbit itself has none. */
 static const char *reason_of(const worker *w) {
   return w->orbit.reason[0] ? w->orbit.reason : w->verification.reason;
 }

@@ -1,4 +1,4 @@
-/* kind: trajectory. The motion from a state, or from a periodic orbit, at every grid point. */
+/* kind: trajectory. An event-driven simulation from a state, or from a periodic orbit, at every grid point. */
 #include <math.h>
 #include <ricochet/ricochet.h>
 #include <stdbool.h>
@@ -12,9 +12,9 @@
 #include "kind/pattern.h"
 #include "base/table.h"
 
-/* --- exponents and how they converged --- */
+/* --- Lyapunov exponents and their convergence --- */
 
-/* The records of one task, of which those are kept that are a twentieth later than the one before, and the last. */
+/* The convergence records of one task: each at least 5 % later than the one before, and the last. */
 typedef struct convergence {
   const table *layout; /* with the columns lyapunov_time and lyapunov_history */
   records *to;
@@ -22,13 +22,13 @@ typedef struct convergence {
   int no_memory;
 } convergence;
 
-/* Tangent vectors of n numbers are n x n doubles: those of the trajectory and of the exponents' work, each with a copy,
- * and what the flow keeps. CVODES keeps all that its highest order, 12, needs of them. Measured up to 600 numbers. */
+/* Tangent vectors of a state of n numbers are n x n doubles: those of the trajectory and of the exponents, each with a
+ * copy, and those of the flow. CVODES stores as many as its highest order, 12, needs. Measured up to 600 numbers. */
 enum { COPIES = 5, CVODES_COPIES = 28, STATE_BYTES = 4096 /* the series of a step, per number of the state */ };
 
-static const double spacing = 1.05; /* times from one record to the next: even on the logarithmic axis it is drawn on */
+static const double spacing = 1.05; /* ratio of the times of two records: equal distances on a logarithmic axis */
 
-/* What tangent vectors take for so many exponents of as many numbers of state, and the records of one task. */
+/* Memory of tangent vectors for all exponents of a state, and of the records of one task. */
 static double convergence_bytes(double exponents, bool by_cvodes) {
   const double most_records = log(1e15) / log(spacing); /* durations over intervals */
   return 8 * exponents * exponents * (by_cvodes ? CVODES_COPIES : COPIES) + STATE_BYTES * exponents +
@@ -46,21 +46,21 @@ static int keep(convergence *c, double time, const double *exponents) {
   return 0;
 }
 
-static int see(double time, const double *exponents, size_t count, void *user) {
+static int add_history(double time, const double *exponents, size_t count, void *user) {
   convergence *c = user;
   (void)count;
   return time >= spacing * c->kept ? keep(c, time, exponents) : 0;
 }
 
-/* Runs a trajectory from where it stands to `end` with all its exponents.
- * @param interval  from one factorisation to the next  @param exponents  set, NaN where the run gives none
- * @returns as ric_lyapunov_run; without memory for a record `no_memory` is set and the run has ended */
+/* Runs a trajectory from its current time to `end` with all its exponents.
+ * @param interval  between factorisations  @param exponents  set, NaN where the run gives none
+ * @returns as ric_lyapunov_run; if a record cannot be allocated, the run ends with `no_memory` set */
 static ric_status convergence_run(convergence *c, ric_trajectory *trajectory, double end, double interval,
                                   const ric_observer *observer, double *exponents, ric_run *did, ric_error *error) {
   ric_lyapunov_options options = ric_lyapunov_options_default();
   ric_lyapunov found;
   options.interval = interval;
-  options.history = see;
+  options.history = add_history;
   options.observer = observer;
   options.user = c;
   ric_status status = ric_lyapunov_run(trajectory, end, &options, exponents, &found, error);
@@ -83,8 +83,8 @@ struct worker {
   ric_orbit orbit;
 };
 
-/* A run under way, as its observer sees it. */
-typedef struct sight {
+/* What the observer of a run needs. */
+typedef struct observation {
   const worker *worker;
   const kind_plan *plan;
   records *tails;
@@ -92,9 +92,9 @@ typedef struct sight {
   trajectory_row row; /* its lyapunov is NULL when exponents are not asked for */
   convergence converged;
   int no_memory;
-} sight;
+} observation;
 
-/* What becomes of a task. */
+/* Outcome of a task. */
 typedef struct verdict {
   int outcome; /* ric_run_outcome and beyond */
   char reason[RIC_REASON_BYTES];
@@ -235,11 +235,11 @@ static ric_trajectory_options options_of(const worker *w) {
 }
 
 static int see_segment(const ric_segment *piece, double end, void *user) {
-  sight *seen = user;
+  observation *seen = user;
   return ric_sampler_segment(piece, end, &seen->sampler);
 }
 
-static void add_record(sight *seen, size_t which, const ric_event *event) {
+static void add_record(observation *seen, size_t which, const ric_event *event) {
   const event_record found = {.time = event->time,
                               .particle = (long long)event->coordinate,
                               .side = seen->worker->model.obstacles[event->obstacle].side > 0 ? 0 : 1,
@@ -255,9 +255,9 @@ static void add_record(sight *seen, size_t which, const ric_event *event) {
     seen->no_memory = 1;
 }
 
-/* A jump is an impact; chatter is listed with the other events too, as those hold when it ends. */
+/* A jump is an impact; chatter is also listed with the other events, which give the time of its end. */
 static int see_event(const ric_event *event, void *user) {
-  sight *seen = user;
+  observation *seen = user;
   if (ric_event_jumps(event))
     add_record(seen, TAIL_IMPACTS, event);
   if (!ric_event_jumps(event) || event->kind == RIC_EVENT_CHATTER)
@@ -265,8 +265,8 @@ static int see_event(const ric_event *event, void *user) {
   return seen->no_memory;
 }
 
-/* Along the trajectory, with its exponents where they are asked for. */
-static ric_status follow(worker *w, sight *seen, ric_trajectory *trajectory, ric_run *did, ric_error *error) {
+/* Runs the trajectory, with its exponents if the study asks for them. */
+static ric_status follow(worker *w, observation *seen, ric_trajectory *trajectory, ric_run *did, ric_error *error) {
   const ric_observer observer = {.segment = see_segment, .event = see_event, .user = seen};
   const double end = w->times[w->samples - 1];
   if (!seen->row.lyapunov)
@@ -275,7 +275,7 @@ static ric_status follow(worker *w, sight *seen, ric_trajectory *trajectory, ric
                          &observer, seen->row.lyapunov, did, error);
 }
 
-static ric_status run(worker *w, sight *seen, const ric_system *system, ric_run *did, ric_error *error) {
+static ric_status run(worker *w, observation *seen, const ric_system *system, ric_run *did, ric_error *error) {
   const ric_trajectory_options options = options_of(w);
   ric_trajectory *trajectory = NULL;
   ric_status status = ric_trajectory_create(system, &options, &trajectory, error);
@@ -289,8 +289,8 @@ static ric_status run(worker *w, sight *seen, const ric_system *system, ric_run 
   return status;
 }
 
-/* From the state at hand to the end. @returns RIC_OK with a verdict, or RIC_ESTOPPED */
-static ric_status move(worker *w, sight *seen, ric_run *did, verdict *found) {
+/* Runs from the initial state to the end. @returns RIC_OK with a verdict, or RIC_ESTOPPED */
+static ric_status move(worker *w, observation *seen, ric_run *did, verdict *found) {
   ric_error error = {0};
   ric_system *system = NULL;
   const lattice_model *m = &w->model;
@@ -324,7 +324,7 @@ static void fill_times(worker *w) {
 }
 
 /* The sampler writes states into the row itself. */
-static sight begin_row(worker *w, const kind_plan *plan, unsigned char *row, records *tails) {
+static observation begin_row(worker *w, const kind_plan *plan, unsigned char *row, records *tails) {
   const size_t n = w->model.lattice.particles;
   trajectory_row found = {0};
   memset(row, 0, plan->rows.row_bytes);
@@ -334,7 +334,7 @@ static sight begin_row(worker *w, const kind_plan *plan, unsigned char *row, rec
   fill_nan(found.v, w->samples * n);
   fill_nan(found.lyapunov, 2 * n);
   found.t = w->times;
-  return (sight){
+  return (observation){
       .worker = w,
       .plan = plan,
       .tails = tails,
@@ -343,7 +343,7 @@ static sight begin_row(worker *w, const kind_plan *plan, unsigned char *row, rec
       .sampler = {.times = w->times, .count = w->samples, .coordinates = n, .speeds = n, .q = found.q, .u = found.v}};
 }
 
-static void finish_row(sight *seen, const verdict *found, const ric_run *did, unsigned char *row) {
+static void finish_row(observation *seen, const verdict *found, const ric_run *did, unsigned char *row) {
   trajectory_row *r = &seen->row;
   r->outcome = found->outcome;
   r->reason = found->reason;
@@ -360,7 +360,7 @@ static int trajectory_evaluate(worker *w, const kind_plan *plan, task_range task
   verdict found = {.outcome = RIC_RUN_COMPLETED};
   ric_run did = {.energy_start = NAN, .energy_end = NAN, .impact_loss = NAN};
   study_values_at(w->values, tasks.first);
-  sight seen = begin_row(w, plan, row, tails);
+  observation seen = begin_row(w, plan, row, tails);
   if (read_start(w, &found) == RIC_ESTOPPED)
     return -1;
   if (found.outcome != TRAJECTORY_NO_ORBIT && move(w, &seen, &did, &found) == RIC_ESTOPPED)
@@ -371,7 +371,7 @@ static int trajectory_evaluate(worker *w, const kind_plan *plan, task_range task
 
 /* --- the study --- */
 
-/* A study of one task says at once what would be its only row: that the library refuses it. */
+/* Refuses a study of one task if the library refuses that task. */
 static int check_only_task(const study *s, message *why) {
   worker *w = NULL;
   ric_error error = {0};
@@ -415,7 +415,7 @@ static int trajectory_plan(const study *s, kind_plan *plan, message *why) {
 
 /* --- its keys --- */
 
-/* A start on an orbit has a period; one from a state has not. */
+/* The period is required for a start on an orbit only. */
 static bool trajectory_wants(const study *s, const document *d, study_key key) {
   return key != KEY_ORBIT_PERIOD || check_node_of_section(s, d, "orbit");
 }

@@ -4,17 +4,17 @@
 
 #include "kind/kind.h"
 
-/** What a system with a floor and a wall per particle, its flow and its trajectory take per particle at most: about 140
- *  bytes with rigid floors (ricochet_bench motion_1000000), 130 more per compliant obstacle. */
+/** Upper bound of the memory of a system with a floor and a wall per particle, its flow and its trajectory: about 140
+ *  bytes per particle with rigid floors (ricochet_bench motion_1000000), 130 more per compliant obstacle. */
 enum { TRAJECTORY_PARTICLE_BYTES = 512 };
 
-/** Tails of a trajectory; that of the exponents is there when they are asked for. */
+/** Ragged tables of a trajectory; that of the exponents exists if they are computed. */
 enum { TAIL_IMPACTS, TAIL_EVENTS, TAIL_LYAPUNOV, TRAJECTORY_TAILS };
 
 /** Outcomes: those of a run, and of tasks without one. */
 enum { TRAJECTORY_NO_ORBIT = RIC_RUN_OUTCOMES, TRAJECTORY_REFUSED, TRAJECTORY_OUTCOMES };
 
-/** A row: the members that its columns name. The sampler fills q and v in their places. */
+/** A row: the members that its columns name. The sampler writes q and v into the row. */
 typedef struct trajectory_row {
   int outcome;
   const char *reason;
@@ -33,15 +33,15 @@ typedef struct event_record {
   double gap_rate, impulse, depth, accumulation;
 } event_record;
 
-/** A record: the exponents by a time. */
+/** A record: the exponents up to a time. */
 typedef struct lyapunov_record {
   double time;
   const double *history;
 } lyapunov_record;
 
-/** What the sizes of rows and tails follow from. */
+/** Sizes that determine those of rows and ragged tables. */
 typedef struct trajectory_shape {
-  double particles, samples, exponents; /* exponents: 0 when they are not asked for */
+  double particles, samples, exponents; /* exponents: 0 if they are not computed */
 } trajectory_shape;
 
 trajectory_shape trajectory_shape_of(const study_values *v);
@@ -49,7 +49,7 @@ trajectory_shape trajectory_shape_of(const study_values *v);
 /** The columns of its tables (kind.h). */
 extern const column_list trajectory_lists[];
 
-/** Lays out the row and the tails. */
+/** Lays out the row and the ragged tables. */
 void trajectory_lay_out(const trajectory_shape *shape, kind_plan *plan);
 
 #endif
