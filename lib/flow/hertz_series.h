@@ -1,4 +1,4 @@
-/* Hertz contacts in Taylor flows: internal to the room.
+/* Hertz contacts in Taylor flows: internal to the room. The force law k u^{3/2} itself: hertz_force, model/obstacle.c.
  *
  * With the penetration u = -gap > 0, p = u^{3/2} obeys u p' = (3/2) u' p, so that
  *
