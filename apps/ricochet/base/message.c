@@ -1,7 +1,9 @@
 #include "message.h"
 
+#include <errno.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <string.h>
 
 int refuse(message *why, int code, const char *format, ...) {
   va_list arguments;
@@ -9,4 +11,8 @@ int refuse(message *why, int code, const char *format, ...) {
   vsnprintf(why->text, sizeof why->text, format, arguments);
   va_end(arguments);
   return code;
+}
+
+int refuse_errno(const char *path, const char *what, message *why) {
+  return refuse(why, EXIT_FILES, "%s: cannot %s: %s", path, what, strerror(errno));
 }

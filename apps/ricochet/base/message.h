@@ -29,4 +29,7 @@ typedef struct file_place {
  */
 int refuse(message *why, int code, const char *format, ...) __attribute__((format(printf, 3, 4)));
 
+/** EXIT_FILES with "PATH: cannot WHAT: REASON", the reason being that of errno. */
+int refuse_errno(const char *path, const char *what, message *why);
+
 #endif

@@ -20,10 +20,6 @@ uint64_t record_header_check(const record_header *header) {
   return digest_bytes(0, header, offsetof(record_header, check));
 }
 
-int refuse_part(const char *path, const char *what, message *why) {
-  return refuse(why, EXIT_FILES, "%s: cannot %s: %s", path, what, strerror(errno));
-}
-
 static void part_name(unsigned generation, unsigned rank, char name[PART_NAME_BYTES]) {
   snprintf(name, PART_NAME_BYTES, "part-%04u-%05u", generation, rank);
 }
@@ -143,7 +139,7 @@ static int append_pieces(checkpoint *c, struct iovec *pieces, int count, message
     if (written <= 0) {
       if (written == 0)
         errno = ENOSPC;
-      refuse_part(c->own_path, "write", why);
+      refuse_errno(c->own_path, "write", why);
       if (ftruncate(c->own_fd, (off_t)c->own_size)) {
         close(c->own_fd);
         c->own_fd = -1;
@@ -162,7 +158,7 @@ int checkpoint_begin(checkpoint *c, int rank, message *why) {
   /* O_EXCL: a file of this name would belong to another run, which the lock excludes. */
   c->own_fd = open(c->own_path, O_CREAT | O_EXCL | O_WRONLY | O_APPEND | O_CLOEXEC, 0666);
   if (c->own_fd < 0)
-    return refuse_part(c->own_path, "create", why);
+    return refuse_errno(c->own_path, "create", why);
   part_header header = {.magic = PART_MAGIC, .format = PART_FORMAT, .identity = c->identity};
   header.check = part_header_check(&header);
   const int code = append_pieces(c, &(struct iovec){.iov_base = &header, .iov_len = sizeof header}, 1, why);
@@ -226,7 +222,7 @@ static int sync_folder(const char *path, message *why) {
   const int fd = open(path, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   int code = 0;
   if ((fd < 0 || fsync(fd)) && errno != EINVAL && errno != EACCES)
-    code = refuse_part(path, "sync the folder", why);
+    code = refuse_errno(path, "sync the folder", why);
   if (fd >= 0)
     close(fd);
   return code;
@@ -236,7 +232,7 @@ int checkpoint_sync(checkpoint *c, message *why) {
   if (c->own_fd < 0)
     return 0;
   if (fdatasync(c->own_fd))
-    return refuse_part(c->own_path, "sync", why);
+    return refuse_errno(c->own_path, "sync", why);
   if (c->folder_synced)
     return 0;
   char parent[PATH_MAX];
@@ -257,7 +253,7 @@ static int remove_parts(const char *folder, DIR *entries, message *why) {
       continue;
     part_path(folder, generation, rank, path);
     if (unlink(path) && errno != ENOENT)
-      return refuse_part(path, "remove", why);
+      return refuse_errno(path, "remove", why);
   }
   return 0;
 }
@@ -265,12 +261,12 @@ static int remove_parts(const char *folder, DIR *entries, message *why) {
 int checkpoint_remove(const char *folder, message *why) {
   DIR *entries = opendir(folder);
   if (!entries)
-    return errno == ENOENT ? 0 : refuse_part(folder, "read the folder", why);
+    return errno == ENOENT ? 0 : refuse_errno(folder, "read the folder", why);
   const int code = remove_parts(folder, entries, why);
   closedir(entries);
   if (code)
     return code;
   if (rmdir(folder) && errno != ENOTEMPTY && errno != EEXIST && errno != ENOENT)
-    return refuse_part(folder, "remove the folder", why);
+    return refuse_errno(folder, "remove the folder", why);
   return 0;
 }

@@ -116,9 +116,6 @@ void part_path(const char *folder, unsigned generation, unsigned rank, char *pat
 /** Whether a folder entry is named like a part, and which one. */
 bool part_name_parse(const char *name, unsigned *generation, unsigned *rank);
 
-/** EXIT_FILES with "PATH: cannot WHAT: reason of errno". */
-int refuse_part(const char *path, const char *what, message *why);
-
 /** Bytes between a record's header and its rows. */
 uint64_t counts_bytes(const checkpoint *c, uint64_t count);
 

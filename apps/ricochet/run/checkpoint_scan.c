@@ -16,7 +16,7 @@ static void path_of(const checkpoint *c, size_t number, char *path) {
 static int refuse_number(const checkpoint *c, size_t number, const char *what, message *why) {
   char path[PATH_MAX];
   path_of(c, number, path);
-  return refuse_part(path, what, why);
+  return refuse_errno(path, what, why);
 }
 
 int open_part(checkpoint *c, size_t number, message *why) {
@@ -28,7 +28,7 @@ int open_part(checkpoint *c, size_t number, message *why) {
   path_of(c, number, path);
   c->read_fd = open(path, O_RDONLY | O_CLOEXEC);
   c->read_part = number;
-  return c->read_fd >= 0 ? 0 : refuse_part(path, "open", why);
+  return c->read_fd >= 0 ? 0 : refuse_errno(path, "open", why);
 }
 
 /* @returns bytes read, fewer than `size` at the end of the file, or -1 with errno. */
@@ -190,7 +190,7 @@ static int note_part(checkpoint *c, unsigned generation, unsigned rank, message 
 static int find_parts(checkpoint *c, message *why) {
   DIR *entries = opendir(c->folder);
   if (!entries)
-    return refuse_part(c->folder, "read the folder", why);
+    return refuse_errno(c->folder, "read the folder", why);
   const size_t known = c->part_count;
   int code = 0;
   const struct dirent *entry;
@@ -200,7 +200,7 @@ static int find_parts(checkpoint *c, message *why) {
       code = note_part(c, generation, rank, why);
   }
   if (!code && errno)
-    code = refuse_part(c->folder, "read the folder", why);
+    code = refuse_errno(c->folder, "read the folder", why);
   closedir(entries);
   if (c->part_count > known)
     qsort(c->parts + known, c->part_count - known, sizeof *c->parts, compare_parts);

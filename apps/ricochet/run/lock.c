@@ -25,10 +25,6 @@ struct lock {
   char path[PATH_MAX];
 };
 
-static int refuse_file(const char *path, const char *what, message *why) {
-  return refuse(why, EXIT_FILES, "%s: cannot %s: %s", path, what, strerror(errno));
-}
-
 static lock *lock_allocate(const char *folder, message *why) {
   lock *l = malloc(sizeof *l);
   if (!l) {
@@ -86,7 +82,7 @@ static int write_holder(const lock *l, message *why) {
     strftime(since, sizeof since, "%Y-%m-%d %H:%M:%S", &local);
   const int length = snprintf(text, sizeof text, "host %s, process %ld, since %s\n", host, (long)getpid(), since);
   if (ftruncate(l->fd, 0) || pwrite(l->fd, text, (size_t)length, 0) != length)
-    return refuse_file(l->path, "write", why);
+    return refuse_errno(l->path, "write", why);
   return 0;
 }
 
@@ -95,14 +91,14 @@ typedef enum attempt { TAKEN, HELD, REPLACED, IMPOSSIBLE } attempt;
 /* One attempt at the whole range; `holder` is written when HELD, `why` when IMPOSSIBLE, the file is open when TAKEN. */
 static attempt try_whole(lock *l, char *holder, size_t size, message *why) {
   if (mkdir(l->folder, 0777) && errno != EEXIST) {
-    refuse_file(l->folder, "create the folder", why);
+    refuse_errno(l->folder, "create the folder", why);
     return IMPOSSIBLE;
   }
   l->fd = open(l->path, O_CREAT | O_RDWR | O_CLOEXEC, 0666);
   if (l->fd < 0) {
     if (errno == ENOENT) /* its last holder removed the folder since the mkdir */
       return REPLACED;
-    refuse_file(l->path, "open", why);
+    refuse_errno(l->path, "open", why);
     return IMPOSSIBLE;
   }
   attempt result = TAKEN;
@@ -111,7 +107,7 @@ static attempt try_whole(lock *l, char *holder, size_t size, message *why) {
     if (result == HELD)
       read_holder(l, holder, size);
     else
-      refuse_file(l->path, "lock", why);
+      refuse_errno(l->path, "lock", why);
   } else if (!path_names_file(l)) {
     result = REPLACED;
   }
@@ -145,7 +141,7 @@ int lock_take(const char *folder, double wait_seconds, lock **out, message *why)
   if (!code)
     code = write_holder(l, why);
   if (!code && set_lock(l, F_UNLCK, 1, 0)) /* the bytes of the other ranks, which join now */
-    code = refuse_file(l->path, "unlock", why);
+    code = refuse_errno(l->path, "unlock", why);
   if (code)
     lock_release(&l, 0);
   *out = l;
@@ -155,10 +151,10 @@ int lock_take(const char *folder, double wait_seconds, lock **out, message *why)
 static int join(lock *l, int rank, message *why) {
   l->fd = open(l->path, O_RDWR | O_CLOEXEC);
   if (l->fd < 0)
-    return refuse_file(l->path, "open", why);
+    return refuse_errno(l->path, "open", why);
   if (set_lock(l, F_WRLCK, rank, 1)) {
     if (!is_held(errno))
-      return refuse_file(l->path, "lock", why);
+      return refuse_errno(l->path, "lock", why);
     char holder[400];
     read_holder(l, holder, sizeof holder);
     return refuse(why, EXIT_FILES, "%s: the place of rank %d is held by %s", l->path, rank, holder);

@@ -199,12 +199,11 @@ static int check_from(const study *s, const document *d, message *why) {
   return 0;
 }
 
-/* Checks of the bounds that do not need the start, if only the run finds it. */
-static int check_bounds(const study *s, const document *d, message *why) {
-  const study_key low = KEY_BRANCH_LOW, high = KEY_BRANCH_HIGH;
+/* Refuses two bounds that are both given and not ascending. */
+static int check_bounds(const study *s, const document *d, study_key low, study_key high, message *why) {
   char small[32], large[32];
   if (!study_has(s, low) || !study_has(s, high) || study_number(s, low) < study_number(s, high))
-    return check_log(s, d, why);
+    return 0;
   return document_refuse(d, study_value(s, low)->node, why, "%s = %s, expected less than %s = %s", low->path,
                          shown(study_number(s, low), small, sizeof small), high->path,
                          shown(study_number(s, high), large, sizeof large));
@@ -217,8 +216,10 @@ static int check_range(const study *s, const document *d, message *why) {
   const double high = study_has(s, KEY_BRANCH_HIGH) ? study_number(s, KEY_BRANCH_HIGH) : fmax(from, to);
   char start[32], bound[32];
   shown(from, start, sizeof start);
-  if (starts_at_period(s))
-    return check_bounds(s, d, why);
+  if (starts_at_period(s)) { /* the run finds the start */
+    const int code = check_bounds(s, d, KEY_BRANCH_LOW, KEY_BRANCH_HIGH, why);
+    return code ? code : check_log(s, d, why);
+  }
   if (from == to)
     return document_refuse(d, study_value(s, KEY_BRANCH_TO)->node, why,
                            "branch.to = %s is the start of the branch, expected another value", start);
@@ -265,10 +266,9 @@ static int check_trace_range(const study *s, const document *d, message *why) {
     return document_refuse(d, study_value(s, KEY_BRANCH_TRACE_PARAMETER)->node, why,
                            "branch.trace.parameter = %s is null in the study, expected a number: curves start there",
                            p->name);
-  if (!(low < high))
-    return document_refuse(d, study_value(s, KEY_BRANCH_TRACE_LOW)->node, why,
-                           "branch.trace.low = %s, expected less than branch.trace.high = %s",
-                           shown(low, bound, sizeof bound), shown(high, own, sizeof own));
+  const int code = check_bounds(s, d, KEY_BRANCH_TRACE_LOW, KEY_BRANCH_TRACE_HIGH, why);
+  if (code)
+    return code;
   if (!(low <= start))
     return document_refuse(d, study_value(s, KEY_BRANCH_TRACE_LOW)->node, why,
                            "branch.trace.low = %s is above the start of curves, expected at most %s = %s",
@@ -280,16 +280,6 @@ static int check_trace_range(const study *s, const document *d, message *why) {
   return 0;
 }
 
-static int check_trace_firsts(const study *s, const document *d, message *why) {
-  const study_key low = KEY_BRANCH_TRACE_FIRST_LOW, high = KEY_BRANCH_TRACE_FIRST_HIGH;
-  char small[32], large[32];
-  if (!study_has(s, low) || !study_has(s, high) || study_number(s, low) < study_number(s, high))
-    return 0;
-  return document_refuse(d, study_value(s, low)->node, why, "%s = %s, expected less than %s = %s", low->path,
-                         shown(study_number(s, low), small, sizeof small), high->path,
-                         shown(study_number(s, high), large, sizeof large));
-}
-
 static int check_trace(const study *s, const document *d, message *why) {
   static const study_key steps[] = {KEY_BRANCH_TRACE_STEP, KEY_BRANCH_TRACE_STEP_MOST};
   const typed_value *kinds = study_value(s, KEY_BRANCH_TRACE_KINDS);
@@ -299,7 +289,7 @@ static int check_trace(const study *s, const document *d, message *why) {
     return document_refuse(d, kinds->node, why, "branch.trace.kinds is empty, expected at least one kind");
   int code = check_trace_range(s, d, why);
   if (!code)
-    code = check_trace_firsts(s, d, why);
+    code = check_bounds(s, d, KEY_BRANCH_TRACE_FIRST_LOW, KEY_BRANCH_TRACE_FIRST_HIGH, why);
   return code ? code : check_rising(s, d, steps, sizeof steps / sizeof *steps, why);
 }
 
