@@ -14,6 +14,8 @@ from typing import Any
 import h5py
 import numpy as np
 
+from ricochet.sweep import Array
+
 SCHEMA_VERSION = 1  # the latest schema of results that this package reads
 _LINKS = {"DIMENSION_LIST", "REFERENCE_LIST", "CLASS", "NAME"}  # attributes by which HDF5 attaches scales
 
@@ -112,12 +114,12 @@ class ResultFile:
             codes = h5py.check_enum_dtype(file[name].dtype) or {}
         return tuple(sorted(codes, key=codes.__getitem__))
 
-    def stored(self, name: str, first: int = 0, last: int | None = None) -> np.ndarray:
+    def stored(self, name: str, first: int = 0, last: int | None = None) -> Array:
         """Rows first to last - 1 of a data set as they are stored: codes of enums, bytes of texts."""
         with self._reading(name) as file:
             return np.asarray(file[name][first:last])
 
-    def values(self, name: str, first: int = 0, last: int | None = None) -> np.ndarray:
+    def values(self, name: str, first: int = 0, last: int | None = None) -> Array:
         """The same as words of enums and str of texts."""
         stored = self.stored(name, first, last)
         if stored.dtype.kind == "S":
@@ -131,7 +133,7 @@ class ResultFile:
         return np.array(words)[stored]
 
 
-def texts(stored: np.ndarray) -> np.ndarray:
+def texts(stored: Array) -> Array:
     """Bytes in UTF-8 as str."""
     if stored.size == 0:
         return np.zeros(stored.shape, dtype="U1")

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ricochet.file import MissingError, ResultFile, python_value
-from ricochet.sweep import Sweep
+from ricochet.sweep import Array, Sweep
 from ricochet.table import Layout, Table
 
 if TYPE_CHECKING:
@@ -45,6 +45,7 @@ class Result:
             self._read_study()
             self.sweep: Sweep = self._read_sweep()
             self._layouts = self._read_layouts()
+            self._tables: dict[str, Table] = {}  # those that were asked for, which keep the columns that were read
         except BaseException:
             self.close()
             raise
@@ -135,6 +136,11 @@ class Result:
         """A table with all its rows; of ragged tables those of all tasks, one after another."""
         if name not in self._layouts:
             raise MissingError(self.path, f"it has no table {name}; it has {', '.join(self.tables)}")
+        if name not in self._tables:
+            self._tables[name] = self._table(name)
+        return self._tables[name]
+
+    def _table(self, name: str) -> Table:
         layout = self._layouts[name]
         data_set, (row_axis, *_) = next(iter(layout.values()))
         rows = np.arange(self._file.length(data_set))
@@ -143,7 +149,7 @@ class Result:
             return Table(self._file, name, layout, self.sweep, owners, rows.reshape(self.sweep.shape), self.swept)
         return Table(self._file, name, layout, self.sweep, owners, rows, (row_axis,))
 
-    def _owners(self, name: str, row_axis: str, length: int) -> np.ndarray | None:
+    def _owners(self, name: str, row_axis: str, length: int) -> Array | None:
         """The task of every stored row of a table; None if its rows belong to no task."""
         tasks = np.arange(self.sweep.tasks)
         if row_axis == "task":
@@ -156,13 +162,13 @@ class Result:
             return np.repeat(tasks, self._counts(f"{name}_offset", length))
         return None
 
-    def _window_tasks(self) -> np.ndarray:
+    def _window_tasks(self) -> Array:
         owners = self._file.values("window/task")
         if owners.size and not (owners.min() >= 0 and owners.max() < self.sweep.tasks):
             raise self._file.error("/window/task names a task that there is not, the file is damaged")
         return owners
 
-    def _counts(self, data_set: str, length: int) -> np.ndarray:
+    def _counts(self, data_set: str, length: int) -> Array:
         """The number of rows of every task of a ragged table."""
         edges = self._file.values(data_set)
         counts = np.diff(edges)

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
+Array = NDArray[Any]
 ROUNDING = 1e-9  # relative difference of values that count as equal: a study may write 1/3 in decimals
 
 
@@ -19,7 +22,7 @@ class Sweep:
     values  {name: its value at every task [tasks]}
     """
 
-    def __init__(self, names: Sequence[str], shape: Sequence[int], values: Mapping[str, np.ndarray]):
+    def __init__(self, names: Sequence[str], shape: Sequence[int], values: Mapping[str, Array]):
         self.names = tuple(names)
         self.shape = tuple(shape)
         self.values = dict(values)
@@ -30,7 +33,7 @@ class Sweep:
         """The number of tasks."""
         return math.prod(self.shape)
 
-    def _axis(self, place: int) -> np.ndarray:
+    def _axis(self, place: int) -> Array:
         along = tuple(slice(None) if other == place else 0 for other in range(len(self.shape)))
         return self.values[self.names[place]].reshape(self.shape)[along]
 

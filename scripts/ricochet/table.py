@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ricochet.file import MissingError, ResultFile
-from ricochet.sweep import Sweep
+from ricochet.sweep import Array, Sweep
 
 if TYPE_CHECKING:
     import xarray
@@ -33,8 +33,8 @@ class Table:
         name: str,
         layout: Layout,
         sweep: Sweep,
-        owners: np.ndarray | None,
-        rows: np.ndarray,
+        owners: Array | None,
+        rows: Array,
         dims: tuple[str, ...],
     ):
         """Made by `Result`. `owners`: the task of every stored row. `rows`: the stored rows of this table, an array
@@ -43,7 +43,7 @@ class Table:
         self._file, self._layout, self._sweep, self._owners = file, layout, sweep, owners
         self._shaped, self._dims = rows, dims
         self._rows = rows.ravel()
-        self._read: dict[str, np.ndarray] = {}
+        self._read: dict[str, Array] = {}
 
     def __repr__(self) -> str:
         return f"<Table {self.name}: {len(self)} rows, columns {', '.join(self.columns)}>"
@@ -65,7 +65,7 @@ class Table:
 
     # --- columns ---
 
-    def __getitem__(self, name: str) -> np.ndarray:
+    def __getitem__(self, name: str) -> Array:
         """A column [rows, ...], or the value of a swept parameter at every row [rows]."""
         if name not in self._layout and name in self:
             return self._sweep.values[name][self._known_tasks()]
@@ -73,7 +73,7 @@ class Table:
             self._read[name] = self._taken(self._file.values, name)
         return self._read[name]
 
-    def codes(self, name: str) -> np.ndarray:
+    def codes(self, name: str) -> Array:
         """An enum as integers [rows]: places in `words(name)`."""
         return self._taken(self._file.stored, name)
 
@@ -97,7 +97,7 @@ class Table:
             raise MissingError(self._file.path, f"{self.name} has no column {name}; it has {has}")
         return self._layout[name][0]
 
-    def _taken(self, read: Any, name: str) -> np.ndarray:
+    def _taken(self, read: Callable[[str, int, int], Array], name: str) -> Array:
         """The rows of this table from a data set, of which no more is read than from the first to the last."""
         data_set = self._data_set(name)
         first, last = (int(self._rows.min()), int(self._rows.max()) + 1) if len(self) else (0, 0)
@@ -112,16 +112,17 @@ class Table:
     # --- swept values ---
 
     @property
-    def tasks(self) -> np.ndarray | None:
-        return None if self._owners is None else self._owners[self._rows]
+    def tasks(self) -> Array | None:
+        return None if self._owners is None else self._known_tasks()
 
-    def _known_tasks(self) -> np.ndarray:
+    def _known_tasks(self) -> Array:
         if self._owners is None:
             raise self._file.error(f"the rows of {self.name} belong to no task and have no swept values")
-        return self._owners[self._rows]
+        tasks: Array = self._owners[self._rows]
+        return tasks
 
     @property
-    def coordinates(self) -> dict[str, np.ndarray]:
+    def coordinates(self) -> dict[str, Array]:
         """{swept parameter: its value at every row [rows]}."""
         if self._owners is None:
             return {}
@@ -133,7 +134,7 @@ class Table:
         return all(name in self._sweep.names for name in self._dims)
 
     @property
-    def axes(self) -> dict[str, np.ndarray]:
+    def axes(self) -> dict[str, Array]:
         """{swept parameter: its values [points]} of a grid, in the order of the sweeps; parameters for which one value
         was selected are left out."""
         self._expect_grid()
@@ -143,7 +144,7 @@ class Table:
             found[name] = self[name].reshape(self._shaped.shape)[line]
         return found
 
-    def grid(self, name: str) -> np.ndarray:
+    def grid(self, name: str) -> Array:
         """A column as an array with one axis per sweep, in the order of `axes`, followed by the column's own axes."""
         self._expect_grid()
         column = self[name]
@@ -155,14 +156,14 @@ class Table:
 
     # --- selection ---
 
-    def _with(self, rows: np.ndarray, dims: tuple[str, ...]) -> Table:
+    def _with(self, rows: Array, dims: tuple[str, ...]) -> Table:
         return Table(self._file, self.name, self._layout, self._sweep, self._owners, rows, dims)
 
     def _row_dim(self) -> str:
         """The axis of the stored rows, "task" or "point_row"."""
         return next(iter(self._layout.values()))[1][0]
 
-    def _without_grid(self, rows: np.ndarray) -> Table:
+    def _without_grid(self, rows: Array) -> Table:
         return self._with(rows, (self._row_dim(),))
 
     def select(self, at: Mapping[str, float] | None = None, /, *, exact: bool = False, **more: float) -> Table:
@@ -194,7 +195,7 @@ class Table:
         left = self._dims[:place] + self._dims[place + 1 :]
         return self._with(np.take(self._shaped, found[0], axis=place), left)
 
-    def where(self, condition: np.ndarray | None = None, /, **equal: Any) -> Table:
+    def where(self, condition: Array | None = None, /, **equal: Any) -> Table:
         """The rows that satisfy a condition [rows] of bools, or whose columns have the given values.
 
         `table.where(table["energy"] < 1)`, `table.where(outcome="admissible", side=["floor", "wall"])`: a list allows
@@ -210,7 +211,7 @@ class Table:
             kept &= np.isin(self[name], self._checked(name, np.atleast_1d(allowed)))
         return self._without_grid(self._rows[kept])
 
-    def _checked(self, name: str, allowed: np.ndarray) -> np.ndarray:
+    def _checked(self, name: str, allowed: Array) -> Array:
         words = self.words(name)
         for value in allowed.tolist():
             if words and value not in words:
