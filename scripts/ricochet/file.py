@@ -81,7 +81,9 @@ class ResultFile:
             raise self.error("it is closed")
         try:
             yield self._file
-        except (OSError, RuntimeError, KeyError, ValueError, TypeError, UnicodeDecodeError) as error:
+        except MemoryError:
+            raise
+        except Exception as error:  # what h5py raises depends on where the damage is
             raise self.error(f"{name} cannot be read, the file is damaged: {error}") from error
 
     def __contains__(self, name: str) -> bool:
@@ -96,7 +98,8 @@ class ResultFile:
     def attributes(self, name: str) -> dict[str, Any]:
         """The attributes of a group or a data set as Python values: str, int, float, bool, lists of str, arrays."""
         with self._reading(name) as file:
-            return {key: python_value(value) for key, value in file[name].attrs.items() if key not in _LINKS}
+            attributes = file[name].attrs
+            return {key: python_value(attributes[key]) for key in attributes if key not in _LINKS}
 
     def axes(self, group: str) -> dict[str, tuple[str, ...]]:
         """{name: axes} of the data sets in a group."""
