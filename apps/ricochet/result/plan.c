@@ -29,6 +29,7 @@ static void lay_out_sweep(plan *p) {
         .units = entry->units ? entry->units : "1", /* dimensionless */
         .long_name = entry->doc,
         .source = "swept parameter of the study",
+        .attributes = {{.name = "parameter", .text = sweep->name}},
     };
   }
   table_lay_out(&p->sweep);
