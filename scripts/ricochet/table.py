@@ -199,7 +199,8 @@ class Table:
         """The rows that satisfy a condition [rows] of bools, or whose columns have the given values.
 
         `table.where(table["energy"] < 1)`, `table.where(outcome="admissible", side=["floor", "wall"])`: a list allows
-        each of its values. A word that the enum does not have is a ResultError.
+        each of its values. Swept values are compared as they are stored; `select` allows for rounding. A word that the
+        enum does not have is a ResultError.
         """
         kept = np.ones(len(self), dtype=bool)
         if condition is not None:
@@ -212,7 +213,7 @@ class Table:
         return self._without_grid(self._rows[kept])
 
     def _checked(self, name: str, allowed: Array) -> Array:
-        words = self.words(name)
+        words = self.words(name) if name in self._layout else ()
         for value in allowed.tolist():
             if words and value not in words:
                 raise self._file.error(f"{self.name}: {name} is never {value!r}; its words are {', '.join(words)}")
@@ -236,8 +237,8 @@ class Table:
 
     def to_xarray(self) -> xarray.Dataset:
         """An xarray.Dataset: a grid has the swept parameters as dimensions and coordinates, another table the axis of
-        its rows, with swept values and tasks along it. A column that is called like an axis has the name of
-        the table before its own (special_particle). A ResultError if xarray is not installed."""
+        its rows, with swept values and tasks along it. A column that is called like an axis has the name of the table
+        before its own (special_particle). A ResultError if xarray is not installed."""
         try:
             import xarray
         except ImportError as error:

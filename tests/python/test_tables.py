@@ -190,6 +190,7 @@ def test_rows_are_chosen_by_columns_and_conditions(orbits):
     chosen = orbits.where(outcome="failed").select(gamma=0.2)
     assert chosen.tasks.tolist() == [2] and not chosen.is_grid
     assert len(orbits.where(energy=-1)) == 0
+    assert orbits.where(**{"orbit.period": [3, 5], "model.gamma": 0.2}).tasks.tolist() == [2, 10]
 
 
 def test_what_is_no_condition_is_refused(orbits):
