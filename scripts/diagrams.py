@@ -33,7 +33,8 @@ class Iterates:
         self.study = figures.Study(figures.text_of(file.attrs.get("study", "")))
         self.outcome = figures.names_of(group["outcome"])
         self.columns = {name: group[name][()] for name in columns if name in group}
-        self.observed = figures.text_of(group["values"].attrs.get("long_name", "")) if "values" in group else ""
+        attributes = group["values"].attrs if "values" in group else {}
+        self.observed = figures.text_of(attributes.get("observed", attributes.get("long_name", "")))
         self.followed, self.second = self.study.word("parameter") or "", ""
         self._read_sweep(file)
         self.windows = Windows(file["window"]) if "window" in file else None

@@ -45,7 +45,8 @@ class Grazings:
 
     @staticmethod
     def _name_of(group, column):
-        return figures.text_of(group[column].attrs.get("long_name", "")) if column in group else ""
+        attributes = group[column].attrs if column in group else {}
+        return figures.text_of(attributes.get("parameter", attributes.get("long_name", "")))
 
     rows = Branches.rows
     task_name = Branches.task_name

@@ -59,7 +59,8 @@ class Branches:
         group = file["branch"]
         self.title = figures.text_of(file.attrs.get("title", ""))
         self.study = figures.Study(figures.text_of(file.attrs.get("study", "")))
-        self.followed = figures.text_of(group["point_parameter"].attrs["long_name"])
+        attributes = group["point_parameter"].attrs
+        self.followed = figures.text_of(attributes.get("parameter", attributes["long_name"]))
         self.outcome = figures.names_of(group["outcome"])
         words = ("point_outcome", "point_stable", "special_kind")
         self.columns = {name: group[name][()] for name in group if name not in words and group[name].ndim == 1}

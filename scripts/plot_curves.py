@@ -38,7 +38,8 @@ class Curves(Branches):
         group = file["branch"]
         if "curve_special" not in group:
             raise figures.FigureError("no /branch/curve_special in it (the study did not ask for branch.trace)")
-        self.second = figures.text_of(group["curve_second"].attrs["long_name"])
+        attributes = group["curve_second"].attrs
+        self.second = figures.text_of(attributes.get("parameter", attributes["long_name"]))
         self.columns["curve_outcome"] = figures.names_of(group["curve_outcome"])
 
     def curves(self, task):

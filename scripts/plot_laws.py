@@ -23,7 +23,8 @@ class Shapes:
         if "branch/point_q" not in file:
             raise figures.FigureError("no /branch/point_q in it: not a branch with branch.states: true")
         group = file["branch"]
-        if figures.text_of(group["point_parameter"].attrs["long_name"]) != "model.gamma":
+        attributes = group["point_parameter"].attrs
+        if figures.text_of(attributes.get("parameter", attributes["long_name"])) != "model.gamma":
             raise figures.FigureError("not a branch along model.gamma")
         self.title = figures.text_of(file.attrs.get("title", ""))
         self.study = figures.Study(figures.text_of(file.attrs.get("study", "")))

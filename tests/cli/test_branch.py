@@ -246,7 +246,7 @@ def test_groups_open_in_xarray_and_as_csv(ricochet, folder):
     path = run(ricochet, folder, WALL)
     with xarray.open_dataset(path, engine="h5netcdf", group="branch") as opened:
         assert opened.point_energy.dims == ("point_row",) and opened.special_q.dims == ("special_row", "particle")
-        assert opened.point_parameter.attrs["long_name"] == "model.force"
+        assert opened.point_parameter.attrs["parameter"] == "model.force"
         opened.load()
     out = ricochet("show", path, "--csv=branch/special_row", cwd=folder).expect_done().out
     table = list(csv.DictReader(io.StringIO(out)))

@@ -80,8 +80,8 @@ def test_the_grazing_curve_is_the_closed_form(ricochet, folder):
         assert np.allclose(found["curve_period"][curve], 2 * np.pi / w, rtol=1e-14)
         assert {found["curve_outcome"][k] for k in curve} == {"grazing"}
     with h5py.File(path) as file:
-        assert file["branch/curve_parameter"].attrs["long_name"] == b"model.force"
-        assert file["branch/curve_second"].attrs["long_name"] == b"model.frequency"
+        assert file["branch/curve_parameter"].attrs["parameter"] == b"model.force"
+        assert file["branch/curve_second"].attrs["parameter"] == b"model.frequency"
     ricochet("show", path, "--verify", cwd=folder).expect_done()
     with xarray.open_dataset(path, engine="h5netcdf", group="branch") as opened:
         assert opened.curve_second.dims == ("curve_row",) and opened.curve_end_part.dims == ("curve_end_row",)

@@ -95,7 +95,7 @@ def test_windows_and_chaos_lie_where_the_source_has_them(ricochet, folder):
     assert np.allclose(found["impacts"][[0, 2, 3, 4]], [0.25, 0.2, 0.2, 0.2])
     with h5py.File(folder / "s.h5") as file:
         assert file["diagram/attractor_period"].attrs["period_limit"] == 64
-        assert file["diagram/values"].attrs["long_name"] == b"z1"
+        assert file["diagram/values"].attrs["observed"] == b"z1"
     long = found_by(ricochet, folder, MAP.replace("keep: 100", "keep: 100, period_limit: 4"), name="long")
     assert long["attractor_period"].tolist() == [0] and long["outcome"] == ["aperiodic"]
 

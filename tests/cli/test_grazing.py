@@ -335,7 +335,7 @@ def test_groups_open_in_xarray_and_as_csv(ricochet, folder):
         assert opened.coefficient.dims == ("task", "power") and opened.eta.dims == ("task", "coordinate")
         assert opened.L.dims == ("task", "coordinate", "column") and opened.multipliers.dims == ("task", "eigenvalue")
         assert opened.q.dims == ("task", "particle") and opened.window_low.dims == ("task", "window")
-        assert opened.parameter.attrs["long_name"] == "model.force" and opened.multiplier.dims == ("task",)
+        assert opened.parameter.attrs["parameter"] == "model.force" and opened.multiplier.dims == ("task",)
         assert opened.isel(task=1, particle=0).q.item() == opened.q[1, 0].item()
         opened.load()
     out = ricochet("show", path, "--csv", cwd=folder).expect_done().out

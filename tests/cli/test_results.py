@@ -9,6 +9,7 @@ import numpy as np
 import program
 import pytest
 import xarray
+import yaml
 from program import assert_same, coarser, names, study, sweep, words_of, write
 
 TABLE = "{parameter: model.gamma, values: [0.05, 0.149153131912, 0.187, 0.19444444444444445]}"
@@ -203,6 +204,158 @@ def test_the_command_is_recorded_as_typed(ricochet, folder):
     ricochet("run", "s.yaml", "--set", "model.gamma=0.2", "--progress", "never", cwd=folder).expect_done()
     with h5py.File(folder / "s.h5") as file:
         assert file.attrs["command"].decode() == "ricochet run s.yaml --set model.gamma=0.2 --progress never"
+
+
+# --- /study ---
+
+FILLED = {"branch.from", "iterate.observe"}  # what the kind chooses where the study leaves them out
+
+
+def number(word):
+    """A number of a study; NaN for null."""
+    if word in ("null", ""):
+        return np.nan
+    if not word.endswith("pi"):
+        return float(word)
+    factor = word.removesuffix("pi").strip()
+    return float(factor + "1" if factor in ("", "-") else factor) * np.pi
+
+
+def leaves(section, name=""):
+    """{path: value} of the keys below a section of a study, without its sweeps."""
+    found = {}
+    for key, value in section.items():
+        path = f"{name}{key}"
+        if isinstance(value, dict) and path != "sweep":
+            found |= leaves(value, f"{path}.")
+        elif path != "sweep":
+            found[path] = value
+    return found
+
+
+def swept_first(sweeps):
+    """[(parameter, its first value)] of the sweeps of a study."""
+    entries = sweeps if isinstance(sweeps, list) else [sweeps] if sweeps else []
+    return [(e["parameter"], e["values"][0] if "values" in e else e["from"]) for e in entries]
+
+
+def defaults_of(reference, model):
+    """{path: default as YAML text} from the reference of studies, where there is one."""
+    found = {}
+    for line in reference.splitlines():
+        cells = [cell.strip() for cell in line.split("|")]
+        if len(cells) == 7 and re.fullmatch(r"`[\w.]+`", cells[1]) and cells[3].startswith("`"):
+            own = re.search(rf"Default with `model.type: {model}`: `([^`]*)`", cells[5])
+            found[cells[1].strip("`")] = own[1] if own else cells[3].strip("`")
+    return found
+
+
+def assert_holds(attributes, path, value):
+    """An attribute of /study has the type of its key and the value that a study gives, words and lists of words."""
+    stored = np.asarray(attributes[path])
+    assert stored.shape == ((len(value),) if isinstance(value, list) else ()), (path, stored)
+    if stored.dtype == bool:
+        assert value == str(stored).lower(), (path, stored, value)
+    elif stored.dtype.kind == "S":
+        assert np.char.decode(stored, "utf-8").tolist() == value, (path, stored, value)
+    else:
+        assert stored.dtype in (np.float64, np.int64), (path, stored.dtype)
+        expected = [number(v) for v in value] if isinstance(value, list) else number(value)
+        np.testing.assert_allclose(stored.astype(float), expected, rtol=1e-15, err_msg=path)
+
+
+def test_the_group_study_holds_every_value_of_the_study_and_every_default(ricochet, folder, shipped):
+    reference = ricochet("check", "--reference", cwd=folder).expect_done().out
+    for result in shipped:
+        with h5py.File(result) as file:
+            held = yaml.load(file.attrs["study"], yaml.BaseLoader)
+            stored = dict(file["study"].attrs)
+        given, swept = ([name.decode() for name in stored.pop(which)] for which in ("given", "swept"))
+        stated, first = leaves(held), swept_first(held.get("sweep"))
+        defaults = defaults_of(reference, held["model"]["type"])
+        assert swept == [name for name, _ in first], result
+        for name, value in first:
+            path, _, item = name.rstrip("]").partition("[")
+            stated[path] = [*stated[path][: int(item)], value, *stated[path][int(item) + 1 :]] if item else value
+        followed = {held["branch"]["parameter"].partition("[")[0]} if "branch" in held else set()
+        assert set(given) - followed == set(stated) - followed, result
+        assert set(stated) <= set(stored), (result, set(stated) - set(stored))
+        for path, value in stated.items():
+            assert_holds(stored, path, value)
+        for path in set(stored) - set(given) - FILLED - {"title"}:
+            assert_holds(stored, path, yaml.load(defaults[path], yaml.BaseLoader))
+
+
+def values_of(path):
+    """The attributes of /study, down to the bits."""
+    with h5py.File(path) as file:
+        return program.contents(path)["study"], dict(file["study"].attrs)
+
+
+def test_flow_style_block_style_and_set_give_the_same_values(ricochet, folder):
+    flow = study(particles=3, gamma="0.25", orbit="tolerance: null, stable: true",
+                 sweep=sweep(3, 1, 4, parameter="orbit.period"))
+    block = """kind: orbits
+model:
+  type: chain
+  gamma: 25e-2
+  particles: 3.0
+  ends: periodic
+  floor: -1
+orbit:
+  period: 1.5 pi
+  at_start:
+    - 0
+  tolerance:
+  stable: true
+sweep:
+  - parameter: orbit.period
+    from: 1
+    to: 4
+    points: 3
+"""
+    short = "{kind: orbits, model: {type: chain, ends: periodic}, orbit: {period: 1, stable: false}}"
+    words = ["model.gamma=0.25", "model.particles=3", "model.floor=-1", "orbit.at_start=[0]", "orbit.tolerance=null",
+             "orbit.stable=true", "sweep={parameter: orbit.period, from: 1, to: 4, points: 3}"]  # fmt: skip
+    sets = [part for word in words for part in ("--set", word)]
+    first, held = values_of(run(ricochet, folder, flow, name="flow"))
+    assert values_of(run(ricochet, folder, block, name="block"))[0] == first
+    assert values_of(run(ricochet, folder, short, *sets, name="short"))[0] == first
+    assert held["model.particles"] == 3 and held["model.particles"].dtype == np.int64
+    assert held["model.gamma"] == 0.25 and held["orbit.period"] == 1 and held["swept"].tolist() == [b"orbit.period"]
+    assert held["orbit.stable"].dtype == bool and held["orbit.stable"] and not held["orbit.verify"]
+    assert np.isnan(held["orbit.tolerance"]) and held["title"] == b"" and held["orbit.at_half"].shape == (0,)
+
+
+def test_null_among_integers_and_in_lists_is_nan(ricochet, folder):
+    text = program.trajectory(particles=3, floor="[-1, null, -2]", sweep="{parameter: 'model.floor[2]', values: [-3, -4]}")
+    _, held = values_of(run(ricochet, folder, text))
+    np.testing.assert_array_equal(held["model.floor"], [-1, np.nan, -3])
+    assert held["swept"].tolist() == [b"model.floor[2]"] and b"model.floor" in held["given"]
+
+
+def test_a_list_of_many_numbers_is_kept_whole(ricochet, folder):
+    """Beyond 64 kB HDF5 has no checksum for it; --verify has."""
+    forces = [i / 1024 for i in range(20000)]
+    text = program.trajectory(particles=20000, model=f"force: {forces}", duration=0.01, time="samples: 2")
+    path = run(ricochet, folder, text)
+    ricochet("show", path, "--verify", cwd=folder).expect_done()
+    with h5py.File(path) as file:
+        np.testing.assert_array_equal(file["study"].attrs["model.force"], forces)
+    data = path.read_bytes()
+    at = data.index(np.array(forces[7000:7010]).tobytes())
+    write(folder, "flipped.h5", data[:at] + bytes([data[at] ^ 1]) + data[at + 1 :])
+    ricochet("show", "flipped.h5", "--verify", cwd=folder).expect_refused(program.FILES, "flipped.h5: ", "/study")
+
+
+def test_results_of_earlier_versions_without_the_group_are_still_sound(ricochet, folder):
+    path = run(ricochet, folder, study(sweep=sweep(3)))
+    with h5py.File(path, "r+") as file:
+        del file["study"]
+    ricochet("show", path, "--verify", cwd=folder).expect_refused(program.FILES, str(path), "/study")
+    with h5py.File(path, "r+") as file:
+        del file.attrs["study_values_checksum"]
+    ricochet("show", path, "--verify", cwd=folder).expect_done()
 
 
 def test_long_studies_fit_in_the_study_attribute(ricochet, folder):

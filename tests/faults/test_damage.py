@@ -83,6 +83,18 @@ def test_a_flipped_bit_anywhere_else_is_found_or_changes_nothing(ricochet, folde
         assert same, f"verify misses the damage at byte {path.stem}"
 
 
+def test_a_flipped_bit_in_the_values_of_the_study_is_found(ricochet, folder):
+    data = ricochet.result_of(STUDY).read_bytes()
+    with h5py.File(ricochet.result_of(STUDY)) as file:
+        names_there = list(file["study"].attrs)
+    assert len(names_there) > 30
+    for name in names_there:
+        at = data.index(name.encode() + b"\0")  # before its type and its value
+        for place in (at, at + len(name) + 20):
+            path = write(folder, "flipped.h5", flipped(data, place, place % 8))
+            ricochet("show", path.name, "--verify", cwd=folder).expect_refused(FILES, f"{path.name}: ")
+
+
 def test_whatever_is_damaged_show_neither_crashes_nor_hangs(ricochet, folder):
     data = ricochet.result_of(STUDY).read_bytes()
 

@@ -1,9 +1,11 @@
-"""What a user does with an installation: starts the program, builds against the library in C and C++, by CMake and by
-pkg-config. Nothing is set that a user would not set, and the installation is moved before it is used: nothing in it may
-name the place it was put to first."""
+"""What a user does with an installation: starts the program, imports the Python package, builds against the library in
+C and C++, by CMake and by pkg-config. Nothing is set that a user would not set, and the installation is moved before it
+is used: nothing in it may name the place it was put to first."""
 
 import os
+import shutil
 import subprocess
+from pathlib import Path
 
 import h5py
 import pytest
@@ -68,3 +70,37 @@ def test_c_and_cpp_programs_build_by_pkg_config(libdir, consumer, folder):
     for compiler, name, expected in (("cc -std=c17", "consumer.c", C), ("c++ -std=c++11", "consumer.cpp", CPP)):
         output_of("sh", "-c", f"{compiler} -Wall -Wextra -Wpedantic -Werror {consumer / name} {flags}", cwd=folder, env=env)
         assert output_of(folder / "a.out") == expected
+
+
+def import_from(folder, cwd):
+    """Where python3 of the system finds the package if PYTHONPATH names this folder."""
+    code = "import ricochet; print(ricochet.__version__, ricochet.__file__)"
+    return output_of("/usr/bin/python3", "-B", "-c", code, cwd=cwd, env={"PYTHONPATH": str(folder)}).split()
+
+
+def test_the_python_package_is_installed_without_its_byte_code(prefix, folder, source):
+    installed = next(prefix.rglob("ricochet/__init__.py")).parent
+    version, file = import_from(installed.parent, folder)
+    assert file == str(installed / "__init__.py")
+    shipped = {p.name for p in (source / "scripts" / "ricochet").iterdir() if p.suffix in (".py", ".typed")}
+    assert {p.name for p in installed.iterdir()} == shipped
+    assert output_of(prefix / "bin" / "ricochet", "--version").split()[1].startswith(version)
+
+
+def test_python_of_the_system_finds_the_package_under_usr_local(prefix):
+    """Only the folder is compared: nothing is installed there."""
+    installed = next(prefix.rglob("ricochet/__init__.py")).parent.parent.relative_to(prefix)
+    path = output_of("/usr/bin/python3", "-c", "import sys; print(*sys.path, sep='\\n')").splitlines()
+    assert str(Path("/usr/local") / installed) in path
+
+
+def test_pip_installs_the_package_from_the_checkout(source, folder):
+    """From a copy, as pip leaves its build folder there."""
+    shutil.copytree(source / "scripts" / "ricochet", folder / "scripts" / "ricochet")
+    shutil.copy(source / "scripts" / "pyproject.toml", folder / "scripts")
+    pip = ("/usr/bin/python3", "-m", "pip", "install", "--quiet", "--no-deps", "--no-build-isolation", "--target")
+    output_of(*pip, folder / "target", folder / "scripts", cwd=folder, env={"PIP_ROOT_USER_ACTION": "ignore"})
+    version, file = import_from(folder / "target", folder)
+    assert file == str(folder / "target" / "ricochet" / "__init__.py")
+    assert (folder / "target" / f"ricochet-{version}.dist-info").is_dir()
+    assert (folder / "target" / "ricochet" / "py.typed").exists()

@@ -7,7 +7,8 @@
 
 /** @param points  of the two sweeps; both 0 for a study without a sweep, which has one task
  *  @param text_bytes  length of the study's text
+ *  @param list  numbers of its one long list, `model.force`
  *  @returns NULL when out of memory; study_destroy frees */
-study *fake_study_create(size_t gammas, size_t floors, size_t text_bytes);
+study *fake_study_create(size_t gammas, size_t floors, size_t text_bytes, size_t list);
 
 #endif

@@ -128,7 +128,7 @@ static int check(const scenario *t, int code, const message *why) {
 }
 
 static int run(const scenario *t) {
-  const synthetic_size size = {300, 200, 6, 2, 5, 300};
+  const synthetic_size size = {300, 200, 6, 2, 5, 300, 3};
   synthetic s;
   message why = {""};
   struct rlimit before;
@@ -146,7 +146,7 @@ static int run(const scenario *t) {
 
 /* After all the failures, writing still works. */
 static int run_good(void) {
-  const synthetic_size size = {3, 2, 6, 2, 5, 300};
+  const synthetic_size size = {3, 2, 6, 2, 5, 300, 3};
   synthetic s;
   message why = {""};
   if (synthetic_init(&s, &size, ranks) != 0)

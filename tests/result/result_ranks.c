@@ -25,7 +25,7 @@ static int write_and_time(const char *path, const synthetic_size *size) {
 }
 
 int main(int argc, char **argv) {
-  synthetic_size size = {5, 4, 6, 0, 50, 300};
+  synthetic_size size = {5, 4, 6, 0, 50, 300, 3};
   size_t *const fields[] = {&size.gammas,  &size.floors,  &size.particles,
                             &size.impacts, &size.special, &size.text_bytes};
   if (argc < 2 || argc > 8)

@@ -112,10 +112,12 @@ static void lay_out(synthetic *s, const synthetic_size *size) {
   }
   table_put_attribute(&s->layouts[0], "outcome", "tolerance", 1e-6);
   table_put_attribute(&s->layouts[0], "outcome", "band", 0.25);
+  table_put_parameter(&s->layouts[1], "gamma", "model.gamma");
+  table_put_text(&s->layouts[0], "energy", "observed", "q0");
 }
 
 int synthetic_init(synthetic *s, const synthetic_size *size, int ranks) {
-  *s = (synthetic){.study = fake_study_create(size->gammas, size->floors, size->text_bytes)};
+  *s = (synthetic){.study = fake_study_create(size->gammas, size->floors, size->text_bytes, size->list)};
   if (!s->study)
     return 1;
   lay_out(s, size);
@@ -141,10 +143,10 @@ void synthetic_clear(synthetic *s) {
   study_destroy(&s->study);
 }
 
-int synthetic_write(const char *path) {
+int synthetic_write(const char *path, size_t list) {
   synthetic s;
   message why;
-  int code = synthetic_init(&s, &(synthetic_size){5, 4, 6, 0, 50, 300}, 1);
+  int code = synthetic_init(&s, &(synthetic_size){5, 4, 6, 0, 50, 300, list}, 1);
   if (!code)
     code = result_write(path, &s.header, s.tables, SYNTHETIC_TABLES, NULL, NULL, &why);
   synthetic_clear(&s);

@@ -9,6 +9,7 @@ typedef struct synthetic_size {
   size_t particles, impacts;
   size_t special;    /* rows of the table that has no row per task */
   size_t text_bytes; /* of the study */
+  size_t list;       /* numbers of the study's list */
 } synthetic_size;
 
 enum { SYNTHETIC_TABLES = 3 };
@@ -24,8 +25,10 @@ typedef struct synthetic {
 int synthetic_init(synthetic *s, const synthetic_size *size, int ranks);
 void synthetic_clear(synthetic *s);
 
-/** Writes a file of small tables from this process alone, without MPI. @returns 0 or an exit code */
-int synthetic_write(const char *path);
+/** Writes a file of small tables from this process alone, without MPI.
+ *  @param list  numbers of the study's list
+ *  @returns 0 or an exit code */
+int synthetic_write(const char *path, size_t list);
 
 /** Its groups have no cards. */
 result_card *synthetic_card(const char *group);

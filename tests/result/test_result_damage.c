@@ -12,11 +12,12 @@ typedef struct bytes {
   size_t count;
 } bytes;
 
-static bytes good;
+static bytes good; /* of the small file, or of one with a long list */
 
-static int load(void **state) {
-  (void)state;
-  if (synthetic_write(RESULT_FILE) != 0)
+static int load_of(size_t list) {
+  free(good.at);
+  good = (bytes){0};
+  if (synthetic_write(RESULT_FILE, list) != 0)
     return -1;
   FILE *from = fopen(RESULT_FILE, "rb");
   if (!from || fseek(from, 0, SEEK_END) != 0)
@@ -26,6 +27,16 @@ static int load(void **state) {
   rewind(from);
   int failed = !good.at || fread(good.at, good.count, 1, from) != 1;
   return fclose(from) != 0 || failed ? -1 : 0;
+}
+
+static int load(void **state) {
+  (void)state;
+  return load_of(3);
+}
+
+static int load_long(void **state) {
+  (void)state;
+  return load_of(1000000);
 }
 
 static int unload(void **state) {
@@ -98,6 +109,29 @@ static void flipped_bit_in_study_is_refused(void **state) {
   assert_refused("");
 }
 
+static size_t find_number(double number) {
+  char pattern[sizeof number];
+  memcpy(pattern, &number, sizeof number);
+  return find(pattern, sizeof pattern);
+}
+
+static void flipped_bit_in_a_value_of_the_study_is_refused(void **state) {
+  (void)state;
+  store(good.count, find("periodic", 8), 0x01);
+  assert_refused("");
+  store(good.count, find_number(0.5), 0x01);
+  assert_refused("");
+}
+
+/* HDF5 keeps no checksum of so long an attribute. */
+static void flipped_bit_in_a_long_list_of_the_study_is_refused(void **state) {
+  (void)state;
+  message why = {""};
+  assert_int_equal(result_verify(RESULT_FILE, &why), 0);
+  store(good.count, find_number(700001), 0x01);
+  assert_refused("/study is damaged");
+}
+
 /* HDF5 itself would loop for ever on some of these. */
 static void flipped_bits_in_references_to_axes_are_refused(void **state) {
   (void)state;
@@ -155,6 +189,8 @@ int main(void) {
       cmocka_unit_test(flipped_bit_in_text_data_is_refused),
       cmocka_unit_test(flipped_bit_in_numbers_is_refused),
       cmocka_unit_test(flipped_bit_in_study_is_refused),
+      cmocka_unit_test(flipped_bit_in_a_value_of_the_study_is_refused),
+      cmocka_unit_test_setup_teardown(flipped_bit_in_a_long_list_of_the_study_is_refused, load_long, load),
       cmocka_unit_test(flipped_bits_in_references_to_axes_are_refused),
       cmocka_unit_test(flipped_bits_anywhere_neither_crash_nor_hang),
       cmocka_unit_test(truncated_file_is_refused),

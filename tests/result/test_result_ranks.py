@@ -61,6 +61,31 @@ def check_data_sets(file):
     file.visititems(check)
 
 
+def check_study(values):
+    expected = {
+        "title": numpy.bytes_("made up, à la carte".encode()),
+        "model.ends": numpy.bytes_(b"periodic"),
+        "orbit.states": numpy.bool_(True),
+        "orbit.mode": numpy.float64("nan"),
+        "orbit.excited": numpy.array([3, 1, 2]),
+        "orbit.sequence": numpy.array([], dtype=int),
+        "branch.kinds": numpy.array([b"zero", b"grazing"]),
+        "model.force": numpy.arange(3.0),
+        "model.gamma": numpy.float64(0),
+        "model.floor": numpy.array([-1, math.nan, 0.5, -1, -1]),
+        "model.floor:units": numpy.bytes_(b"length"),
+        "swept": numpy.array([b"model.gamma", b"model.floor[3]"]),
+        "given": numpy.array(
+            [b"title", b"orbit.states", b"orbit.excited", b"model.force", b"model.gamma", b"model.floor"]
+        ),
+    }
+    assert set(values) == set(expected)
+    for name, value in expected.items():
+        stored = numpy.asarray(values[name])
+        assert (stored.dtype, stored.shape) == (value.dtype, value.shape), name
+        numpy.testing.assert_array_equal(stored, value, name)
+
+
 def check_values(file):
     assert file.attrs["creator"] == b"ricochet" and file.attrs["schema_version"] == 1
     assert file.attrs["title"].decode() == "made up, à la carte"
@@ -70,6 +95,10 @@ def check_values(file):
     assert file["sweep"].attrs["parameters"] == b"model.gamma model.floor[3]"
     numpy.testing.assert_array_equal(file["sweep/model.gamma"], 0.1 * numpy.repeat(numpy.arange(5.0), 4))
     numpy.testing.assert_array_equal(file["sweep/model.floor[3]"], numpy.tile([-1.0, -2, -3, -4], 5))
+    check_study(file["study"].attrs)
+    assert file["special/gamma"].attrs["parameter"] == b"model.gamma"
+    assert file["orbits/energy"].attrs["observed"] == b"q0"
+    assert file["sweep/model.floor[3]"].attrs["parameter"] == b"model.floor[3]"
     words = h5py.check_enum_dtype(file["orbits/outcome"].dtype)
     assert words == {"admissible": 0, "inadmissible": 1, "grazing": 2, "failed": 3}, words
     numpy.testing.assert_array_equal(file["orbits/outcome"], numpy.arange(20) ** 2 % 4)

@@ -69,6 +69,7 @@ static void show_lists_columns_and_counts_words(void **state) {
   assert_line("  q                   float64     [task 20, particle 6]            length  a made-up number");
   assert_line("  path                float64     [task 20, sample 5, particle 6]  length  a made-up number");
   assert_line("  multipliers         complex128  [task 20, multiplier 12]         1       a made-up complex number");
+  assert_line("  energy              float64     [task 20]                        length  a made-up number: q0");
   assert_line("  reason              text 32     [task 20]                                a made-up remark");
   assert_line("  outcome: admissible 10, inadmissible 10");
 }
@@ -125,7 +126,7 @@ static void failing_output_is_an_error(void **state) {
 
 static int write_result(void **state) {
   (void)state;
-  return synthetic_write(RESULT_FILE);
+  return synthetic_write(RESULT_FILE, 3);
 }
 
 static int remove_result(void **state) {

@@ -124,21 +124,27 @@ const column *table_column(const table *t, const char *name) {
   return NULL;
 }
 
-void table_put_long_name(table *t, const char *name, const char *long_name) {
-  for (size_t i = 0; i < t->column_count; i++)
-    if (strcmp(t->columns[i].name, name) == 0)
-      t->columns[i].long_name = long_name;
-}
-
-void table_put_attribute(table *t, const char *name, const char *attribute, double value) {
+static void put_attribute(table *t, const char *name, column_attribute added) {
   for (size_t i = 0; i < t->column_count; i++) {
     column_attribute *free_one = t->columns[i].attributes;
     if (strcmp(t->columns[i].name, name) != 0)
       continue;
     while (free_one->name)
       free_one++;
-    *free_one = (column_attribute){attribute, value};
+    *free_one = added;
   }
+}
+
+void table_put_attribute(table *t, const char *name, const char *attribute, double value) {
+  put_attribute(t, name, (column_attribute){.name = attribute, .value = value});
+}
+
+void table_put_text(table *t, const char *name, const char *attribute, const char *text) {
+  put_attribute(t, name, (column_attribute){.name = attribute, .text = text});
+}
+
+void table_put_parameter(table *t, const char *name, const char *parameter) {
+  table_put_text(t, name, "parameter", parameter);
 }
 
 /* Whether the member is a pointer to values rather than a value. */

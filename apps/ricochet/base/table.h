@@ -26,10 +26,11 @@ enum {
   COLUMN_MOST_ATTRIBUTES = 4
 };
 
-/** A number that belongs to a column as a whole, such as a tolerance behind it. */
+/** A number or text that belongs to a column as a whole, such as a tolerance behind it. */
 typedef struct column_attribute {
   const char *name; /* NULL: none */
-  double value;
+  double value;     /* where there is no text */
+  const char *text;
 } column_attribute;
 
 typedef struct column {
@@ -133,11 +134,12 @@ double table_row_bytes(const table *t);
 /** Column by name, NULL when the table has none. */
 const column *table_column(const table *t, const char *name);
 
-/** Gives a column of the table, if it has one of this name, another long name, borrowed. */
-void table_put_long_name(table *t, const char *name, const char *long_name);
-
-/** Gives a column of the table, if it has one of this name, a further attribute. */
+/** Gives a column of the table, if it has one of this name, a further attribute: a number, or text, borrowed. */
 void table_put_attribute(table *t, const char *name, const char *attribute, double value);
+void table_put_text(table *t, const char *name, const char *attribute, const char *text);
+
+/** Says that a column holds values of a parameter of the study, "model.force", borrowed. */
+void table_put_parameter(table *t, const char *name, const char *parameter);
 
 /** Reads a row into the struct of its table: numbers and words are copied; pointers to several values and to texts then
  *  lead into the row, which is filled through them. Members whose column the table does not have stay as they are. A

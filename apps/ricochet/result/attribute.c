@@ -17,8 +17,8 @@ out:
   return hdf5_close(at, attribute, code);
 }
 
-static int put_scalar(const file_place *at, hid_t object, const char *name, hid_t file_type, hid_t memory_type,
-                      const void *value) {
+int attribute_put_scalar(const file_place *at, hid_t object, const char *name, hid_t file_type, hid_t memory_type,
+                         const void *value) {
   int code = 0;
   hid_t space = H5I_INVALID_HID;
   HDF5_TRY(at, space = H5Screate(H5S_SCALAR), "describe the attribute %s", name);
@@ -61,8 +61,27 @@ int attribute_put_text(const file_place *at, hid_t object, const char *name, con
     text = "";
   size_t bytes = text[0] ? strlen(text) : 1; /* HDF5 has no text of length 0: it is stored as one NUL */
   HDF5_TRY(at, type = attribute_text_type(bytes, character_set(text)), "describe the attribute %s", name);
-  code = put_scalar(at, object, name, type, type, text);
+  code = attribute_put_scalar(at, object, name, type, type, text);
 out:
+  return hdf5_close(at, type, code);
+}
+
+int attribute_put_texts(const file_place *at, hid_t object, const char *name, size_t count, const char *const *texts) {
+  int code = 0;
+  hid_t type = H5I_INVALID_HID;
+  size_t bytes = 1;
+  for (size_t i = 0; i < count; i++)
+    if (strlen(texts[i]) > bytes)
+      bytes = strlen(texts[i]);
+  char *packed = calloc(count + 1, bytes);
+  if (!packed)
+    return refuse(at->why, EXIT_RUN, "%s: out of memory", at->path);
+  for (size_t i = 0; i < count; i++)
+    memcpy(packed + i * bytes, texts[i], strlen(texts[i]));
+  HDF5_TRY(at, type = attribute_text_type(bytes, H5T_CSET_ASCII), "describe the attribute %s", name);
+  code = attribute_put_list(at, object, name, type, type, count, packed);
+out:
+  free(packed);
   return hdf5_close(at, type, code);
 }
 
@@ -80,11 +99,11 @@ int attribute_put_checked_text(const file_place *at, hid_t object, const char *n
 }
 
 int attribute_put_integer(const file_place *at, hid_t object, const char *name, int64_t value) {
-  return put_scalar(at, object, name, H5T_STD_I64LE, H5T_NATIVE_INT64, &value);
+  return attribute_put_scalar(at, object, name, H5T_STD_I64LE, H5T_NATIVE_INT64, &value);
 }
 
 int attribute_put_number(const file_place *at, hid_t object, const char *name, double value) {
-  return put_scalar(at, object, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, &value);
+  return attribute_put_scalar(at, object, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, &value);
 }
 
 /* --- reading --- */
@@ -164,4 +183,43 @@ int attribute_integer(const file_place *at, hid_t object, const char *name, int6
 
 int attribute_number(const file_place *at, hid_t object, const char *name, double *value) {
   return read_scalar(at, object, name, H5T_NATIVE_DOUBLE, value);
+}
+
+/* --- their digest --- */
+
+static herr_t add_values(hid_t attribute, hid_t type, size_t bytes, uint64_t *digest) {
+  unsigned char *values = malloc(bytes + 1);
+  herr_t status = values && bytes ? H5Aread(attribute, type, values) : values ? 0 : -1;
+  if (status >= 0)
+    *digest = digest_bytes(*digest, values, bytes);
+  free(values);
+  return status;
+}
+
+/* Adds an attribute to the digest; 0 goes on, -1 fails as HDF5 iteration wants it. */
+static herr_t add_attribute(hid_t object, const char *name, const H5A_info_t *info, void *digest) {
+  char described[128];
+  (void)info;
+  hid_t attribute = H5Aopen(object, name, H5P_DEFAULT);
+  hid_t type = attribute < 0 ? attribute : H5Aget_type(attribute);
+  hid_t space = attribute < 0 ? attribute : H5Aget_space(attribute);
+  const hssize_t count = space < 0 ? -1 : H5Sget_simple_extent_npoints(space);
+  herr_t status = type < 0 || count < 0 || H5Tget_class(type) == H5T_VLEN ? -1 : 0;
+  if (status == 0) {
+    snprintf(described, sizeof described, " %d %zu %d %lld", (int)H5Tget_class(type), H5Tget_size(type),
+             H5Sget_simple_extent_ndims(space), (long long)count);
+    *(uint64_t *)digest = digest_bytes(*(uint64_t *)digest, name, strlen(name));
+    *(uint64_t *)digest = digest_bytes(*(uint64_t *)digest, described, strlen(described));
+    status = add_values(attribute, type, (size_t)count * H5Tget_size(type), digest);
+  }
+  if ((space >= 0 && H5Sclose(space) < 0) || (type >= 0 && H5Tclose(type) < 0) ||
+      (attribute >= 0 && H5Aclose(attribute) < 0))
+    status = -1;
+  return status < 0 ? -1 : 0;
+}
+
+int attribute_digest(const file_place *at, hid_t object, uint64_t *digest) {
+  *digest = 0;
+  herr_t status = H5Aiterate2(object, H5_INDEX_NAME, H5_ITER_INC, NULL, add_attribute, digest);
+  return status < 0 ? hdf5_refuse(at, "read its attributes") : 0;
 }

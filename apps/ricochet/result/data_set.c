@@ -146,8 +146,10 @@ static int put_flag_meanings(const file_place *at, hid_t set, const column *c) {
 
 static int put_attributes(const file_place *at, hid_t set, const column *c) {
   int code = 0;
-  for (int i = 0; !code && i < COLUMN_MOST_ATTRIBUTES && c->attributes[i].name; i++)
-    code = attribute_put_number(at, set, c->attributes[i].name, c->attributes[i].value);
+  for (int i = 0; !code && i < COLUMN_MOST_ATTRIBUTES && c->attributes[i].name; i++) {
+    const column_attribute *a = &c->attributes[i];
+    code = a->text ? attribute_put_text(at, set, a->name, a->text) : attribute_put_number(at, set, a->name, a->value);
+  }
   return code;
 }
 

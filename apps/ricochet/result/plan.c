@@ -29,6 +29,7 @@ static void lay_out_sweep(plan *p) {
         .units = entry->units ? entry->units : "1", /* dimensionless */
         .long_name = entry->doc,
         .source = "swept parameter of the study",
+        .attributes = {{.name = "parameter", .text = sweep->name}},
     };
   }
   table_lay_out(&p->sweep);
@@ -65,7 +66,7 @@ static int add_scales_of(plan *p, const result_table *t, message *why) {
 /* Axes and groups share the root group, and so must not share a name. */
 static int check_names(const plan *p, message *why) {
   for (size_t i = 0; i < p->scale_count; i++) {
-    bool taken = strcmp(p->scales[i].name, "run") == 0;
+    bool taken = strcmp(p->scales[i].name, "run") == 0 || strcmp(p->scales[i].name, "study") == 0;
     for (size_t k = 0; k < p->table_count; k++)
       taken = taken || strcmp(p->scales[i].name, p->tables[k].layout->group) == 0;
     if (taken)

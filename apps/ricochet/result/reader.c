@@ -195,6 +195,10 @@ out:
   return hdf5_close(at, space, code);
 }
 
+static int read_name(const file_place *at, hid_t set, const char *attribute, char *name, size_t size) {
+  return H5Aexists(set, attribute) > 0 ? attribute_text_into(at, set, attribute, name, size) : 0;
+}
+
 static int open_set(const file_place *at, hid_t group, reader_set *s) {
   s->id = H5Dopen2(group, s->name, H5P_DEFAULT);
   if (s->id < 0)
@@ -206,7 +210,11 @@ static int open_set(const file_place *at, hid_t group, reader_set *s) {
     code = attribute_text_into(at, s->id, "axes", s->axes, sizeof s->axes);
   if (!code)
     code = attribute_text_into(at, s->id, "units", s->units, sizeof s->units);
-  return code ? code : attribute_text_into(at, s->id, "long_name", s->long_name, sizeof s->long_name);
+  if (!code)
+    code = attribute_text_into(at, s->id, "long_name", s->long_name, sizeof s->long_name);
+  if (!code)
+    code = read_name(at, s->id, "parameter", s->parameter, sizeof s->parameter);
+  return code ? code : read_name(at, s->id, "observed", s->observed, sizeof s->observed);
 }
 
 static int open_sets(const file_place *at, hid_t group, reader_group *g) {
@@ -263,6 +271,10 @@ const reader_set *reader_find(const reader_group *g, const char *name) {
     if (strcmp(g->sets[i].name, name) == 0)
       return &g->sets[i];
   return NULL;
+}
+
+const char *reader_parameter(const reader_set *s) {
+  return s->parameter[0] ? s->parameter : s->long_name;
 }
 
 void reader_row_axis(const reader_set *s, char *axis) {

@@ -47,7 +47,8 @@ typedef struct reader_set {
   uint64_t shape[READER_MAX_RANK];
   char *name;
   char axes[256], units[64], long_name[256];
-  char *words[READER_MAX_WORDS]; /* of an enum, by value; NULL where it has none */
+  char parameter[96], observed[96]; /* name of what its values are of: a parameter, a variable; "": of none */
+  char *words[READER_MAX_WORDS];    /* of an enum, by value; NULL where it has none */
 } reader_set;
 
 typedef struct reader_group {
@@ -63,6 +64,9 @@ void reader_group_clear(reader_group *g);
 bool reader_has(reader_handle file, const char *name);
 /** The data set of a name, NULL when the group has none. */
 const reader_set *reader_find(const reader_group *g, const char *name);
+
+/** Name of the parameter of a set that holds values of one; earlier results have it as the long name. */
+const char *reader_parameter(const reader_set *s);
 
 /** Whether the first axis of the set is `axis`, and its length is one value per row of it. */
 bool reader_is_column(const reader_set *s, const char *axis);

@@ -190,8 +190,10 @@ static void show_sets(const reader_group *g) {
   for (size_t k = 0; k < g->count; k++) {
     type_text(&g->sets[k], type, sizeof type);
     shape_text(&g->sets[k], shape, sizeof shape);
-    printf("  %-*s  %-*s  %-*s  %-*s  %s\n", w.name, g->sets[k].name, w.type, type, w.shape, shape, w.units,
-           g->sets[k].units, g->sets[k].long_name);
+    const reader_set *s = &g->sets[k];
+    const char *name = s->parameter[0] ? s->parameter : s->observed;
+    printf("  %-*s  %-*s  %-*s  %-*s  %s%s%s\n", w.name, s->name, w.type, type, w.shape, shape, w.units, s->units,
+           s->long_name, *name ? ": " : "", name);
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -79,6 +80,111 @@ static int put_grid(const file_place *at, hid_t file, const study *s) {
   return hdf5_close(at, group, code);
 }
 
+/* --- the values of the study --- */
+
+typedef struct study_writer {
+  const file_place *at;
+  hid_t group;
+  records given; /* paths of keys, `const char *` */
+} study_writer;
+
+static int put_values(const study_writer *w, const study_entry *e, hid_t file_type, hid_t memory_type,
+                      const void *values) {
+  const char *path = e->key->path;
+  return e->list ? attribute_put_list(w->at, w->group, path, file_type, memory_type, e->count, values)
+                 : attribute_put_scalar(w->at, w->group, path, file_type, memory_type, values);
+}
+
+/* Null is NaN, which makes numbers of integers. */
+static int put_numbers(const study_writer *w, const study_entry *e) {
+  double *values = calloc(e->count + 1, sizeof *values);
+  bool whole = e->key->type == VALUE_INTEGER;
+  if (!values)
+    return refuse(w->at->why, EXIT_RUN, "%s: out of memory", w->at->path);
+  for (size_t i = 0; i < e->count; i++) {
+    values[i] = isinf(e->numbers[i]) ? NAN : e->numbers[i];
+    whole = whole && !isnan(values[i]);
+  }
+  int code = put_values(w, e, whole ? H5T_STD_I64LE : H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, values);
+  free(values);
+  return code;
+}
+
+/* A flag as h5py writes and reads it. */
+static int put_flag(const study_writer *w, const study_entry *e) {
+  int code = 0;
+  const signed char no = 0, yes = 1;
+  hid_t type = H5I_INVALID_HID;
+  HDF5_TRY(w->at, type = H5Tenum_create(H5T_STD_I8LE), "describe /study/%s", e->key->path);
+  HDF5_TRY(w->at, H5Tenum_insert(type, "FALSE", &no), "describe /study/%s", e->key->path);
+  HDF5_TRY(w->at, H5Tenum_insert(type, "TRUE", &yes), "describe /study/%s", e->key->path);
+  code = attribute_put_scalar(w->at, w->group, e->key->path, type, type, e->numbers[0] != 0 ? &yes : &no);
+out:
+  return hdf5_close(w->at, type, code);
+}
+
+/* Words of a list are places among those of the key, "fold|grazing". */
+static int put_words(const study_writer *w, const study_entry *e) {
+  char *words = strdup(e->key->words);
+  const char **texts = calloc(e->count + 1, sizeof *texts);
+  int code = words && texts ? 0 : refuse(w->at->why, EXIT_RUN, "%s: out of memory", w->at->path);
+  double place = 0;
+  for (char *word = code ? NULL : strtok(words, "|"); word; word = strtok(NULL, "|"), place++)
+    for (size_t i = 0; i < e->count; i++)
+      if (e->numbers[i] == place)
+        texts[i] = word;
+  if (!code)
+    code = attribute_put_texts(w->at, w->group, e->key->path, e->count, texts);
+  free(texts);
+  free(words);
+  return code;
+}
+
+static int put_value(const study_writer *w, const study_entry *e) {
+  if (e->text)
+    return attribute_put_text(w->at, w->group, e->key->path, e->text);
+  if (e->key->type == VALUE_WORD)
+    return put_words(w, e);
+  return e->key->type == VALUE_FLAG ? put_flag(w, e) : put_numbers(w, e);
+}
+
+static int put_entry(void *user, const study_entry *e, message *why) {
+  study_writer *w = user;
+  const char *units = e->key->units;
+  int code = put_value(w, e);
+  if (!code && units && *units && strcmp(units, "1") != 0) {
+    char name[128];
+    snprintf(name, sizeof name, "%s:units", e->key->path);
+    code = attribute_put_text(w->at, w->group, name, units);
+  }
+  if (code || !e->given)
+    return code;
+  unsigned char *added = records_add(&w->given);
+  if (!added)
+    return refuse(why, EXIT_RUN, "%s: out of memory", w->at->path);
+  memcpy(added, &e->key->path, sizeof e->key->path);
+  return 0;
+}
+
+/* Every parameter of the study with its type, so that no reader needs the YAML text or the defaults. */
+static int put_study(const file_place *at, hid_t file, const study *s) {
+  study_writer w = {.at = at, .group = H5I_INVALID_HID, .given = {.record_bytes = sizeof(const char *)}};
+  const char *swept[STUDY_MAX_SWEEPS];
+  size_t sweeps = study_sweeps(s);
+  for (size_t k = 0; k < sweeps; k++)
+    swept[k] = study_sweep_at(s, k)->name;
+  int code = open_group(at, file, "study", &w.group);
+  if (!code)
+    code = study_each(s, put_entry, &w, at->why);
+  if (!code)
+    code = attribute_put_texts(at, w.group, "swept", sweeps, swept);
+  if (!code)
+    code = attribute_put_texts(at, w.group, "given", w.given.count, (const char *const *)(void *)w.given.bytes);
+  records_clear(&w.given);
+  code = hdf5_close(at, w.group, code);
+  return code ? code : study_put_checksum(at, file);
+}
+
 /* --- the file's own attributes --- */
 
 /* ISO 8601. */
@@ -143,6 +249,8 @@ static int fill(const file_place *at, hid_t file, const plan *p) {
     code = create_table(at, file, &p->tables[i]);
   if (!code)
     code = put_grid(at, file, p->header->study);
+  if (!code)
+    code = put_study(at, file, p->header->study);
   return code ? code : put_run(at, file, p->header);
 }
 

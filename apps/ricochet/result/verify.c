@@ -78,6 +78,40 @@ int heap_put_checksums(const file_place *at, hid_t file, const skeleton_image *i
   return code;
 }
 
+/* --- the values of the study --- */
+
+static const char values_checksum[] = "study_values_checksum";
+
+/* @param sum  [17] */
+static int study_digest_text(const file_place *at, hid_t file, char *sum) {
+  uint64_t digest;
+  hid_t group = H5Gopen2(file, "study", H5P_DEFAULT);
+  if (group < 0)
+    return hdf5_refuse(at, "open /study");
+  int code = attribute_digest(at, group, &digest);
+  snprintf(sum, 17, "%016llx", (unsigned long long)digest);
+  return hdf5_close(at, group, code);
+}
+
+int study_put_checksum(const file_place *at, hid_t file) {
+  char sum[17];
+  int code = study_digest_text(at, file, sum);
+  return code ? code : attribute_put_text(at, file, values_checksum, sum);
+}
+
+/* Results of earlier versions have neither the group nor its checksum. */
+static int check_values(const file_place *at, hid_t file) {
+  char sum[17], stored[17];
+  if (H5Aexists(file, values_checksum) == 0 && !reader_has(file, "study"))
+    return 0;
+  int code = attribute_text_into(at, file, values_checksum, stored, sizeof stored);
+  if (!code)
+    code = study_digest_text(at, file, sum);
+  if (!code && strcmp(sum, stored) != 0)
+    code = refuse(at->why, EXIT_FILES, "%s: /study is damaged: checksum %s, expected %s", at->path, sum, stored);
+  return code;
+}
+
 /* --- checking --- */
 
 static int check_one(const file_place *at, FILE *from, const heap *h) {
@@ -362,6 +396,8 @@ int verify_part(const file_place *at, const char *path, const plan *expected, in
     code = check_sets(&v, "/");
   if (!code)
     code = check_groups(&v);
+  if (!code && part == 0)
+    code = check_values(at, v.file);
   if (!code && part == 0)
     code = objects_check(at, v.file);
   return hdf5_close(at, v.file, code);

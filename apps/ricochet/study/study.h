@@ -115,6 +115,23 @@ const study_parameter *study_moved(const study *s, study_key by);
 /** Value of sweep `index` at a task below study_tasks; the last sweep varies fastest. */
 double study_sweep_value(const study *s, size_t index, uint64_t task);
 
+/** A key with what it holds at the first task. */
+typedef struct study_entry {
+  study_key key;
+  bool list, given;      /* given: as study_gives */
+  size_t count;          /* elements of a list; 1 for a scalar */
+  const double *numbers; /* [count] as value_number has them; NULL: a word or text */
+  const char *text;      /* a word or text outside a list */
+} study_entry;
+
+/** @returns 0 to go on, or an exit code, with its reason in `why` */
+typedef int study_entry_call(void *user, const study_entry *entry, message *why);
+
+/** Calls for every key that the kind and the type of model take and that has a value, given, filled in or default, in
+ *  the order of the schema; for the title always. The entry lasts as long as the call.
+ *  @returns 0, what a call returned, or EXIT_RUN when out of memory */
+int study_each(const study *s, study_entry_call *call, void *user, message *why);
+
 /* The values of one task: the study's values with the swept ones replaced. */
 
 typedef struct study_values study_values;

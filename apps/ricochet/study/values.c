@@ -95,6 +95,56 @@ void study_values_move(study_values *v, study_key by, double value) {
     put(v, p->key, p->item, value);
 }
 
+/* --- all of them, for results --- */
+
+/* Copies the numbers of a key that is swept, as they are at the first task; NULL where nothing is swept. False: out of
+ * memory. */
+static bool copy_first(const study *s, study_key key, const typed_value *value, double **copy) {
+  *copy = NULL;
+  for (size_t i = 0; i < s->sweep_count; i++) {
+    const study_sweep *sweep = &s->sweeps[i].view;
+    if (sweep->key != key)
+      continue;
+    if (!*copy) {
+      *copy = malloc(value->count * sizeof **copy);
+      if (!*copy)
+        return false;
+      memcpy(*copy, value->numbers, value->count * sizeof **copy);
+    }
+    (*copy)[place_of(sweep->item)] = sweep->values[0];
+  }
+  return true;
+}
+
+static int call_for(const study *s, study_key key, study_entry_call *call, void *user, message *why) {
+  const typed_value *value = study_value(s, key);
+  double *copy;
+  if (!copy_first(s, key, value, &copy))
+    return refuse(why, EXIT_RUN, "%s: out of memory", s->name);
+  const study_entry entry = {.key = key,
+                             .list = value->list,
+                             .given = study_gives(s, key),
+                             .count = value->list ? value->count : 1,
+                             .numbers = copy ? copy : value->numbers,
+                             .text = value->numbers ? NULL : study_word(s, key)};
+  const int code = call(user, &entry, why);
+  free(copy);
+  return code;
+}
+
+int study_each(const study *s, study_entry_call *call, void *user, message *why) {
+  int code = 0;
+  for (size_t i = 0; i < s->schema->key_count && !code; i++) {
+    const study_key key = s->schema->keys[i];
+    const bool holds = s->values[i].present || s->values[i].text || strcmp(key->path, "title") == 0;
+    if (holds && schema_kind_takes(s->kind, key) && schema_model_takes(s->model, key))
+      code = call_for(s, key, call, user, why);
+  }
+  return code;
+}
+
+/* --- a value --- */
+
 bool value_present(const study_values *v, study_key key) {
   return study_value(v->s, key)->present;
 }

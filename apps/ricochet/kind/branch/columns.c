@@ -47,8 +47,8 @@ static const column row_columns[] = {
 
 static const column point_columns[] = {
     COLUMN("point_segment", INTEGER(branch_point, segment), "segment of the task that the point belongs to", CURVE),
-    COLUMN("point_parameter", NUMBER(branch_point, parameter), "the key that is followed", CURVE,
-           .doc = "the parameter that is followed; its key is the attribute `long_name`"),
+    COLUMN("point_parameter", NUMBER(branch_point, parameter), "parameter that is followed", CURVE,
+           .doc = "the parameter that is followed; its key is the attribute `parameter`"),
     COLUMN("point_outcome", WORD(branch_point, outcome, orbit_outcome_names), "whether the motion is one",
            .source = "[JAP] (9)",
            .doc = "`inadmissible`: a solution of the equations that passes through an obstacle, has a negative "
@@ -96,7 +96,7 @@ static const column special_columns[] = {
                   "becomes a grazing contact; `impulse_sign`: an impulse changes sign; `order`: two impacts coincide; "
                   "`regular` is not used"),
     COLUMN("special_segment", INTEGER(branch_special, segment), "segment of the task that the point belongs to", CURVE),
-    COLUMN("special_parameter", NUMBER(branch_special, parameter), "the key that is followed", CURVE,
+    COLUMN("special_parameter", NUMBER(branch_special, parameter), "parameter that is followed", CURVE,
            .doc = "the parameter there, as of points"),
     COLUMN("special_point", INTEGER(branch_special, point), "point of the task before it, from 0", CURVE,
            .doc = "the point of the task before it"),
@@ -211,8 +211,8 @@ void branch_lay_out(const study_values *v, const char *followed, const char *tra
   kind_lay_out_tail(&plan->tails[BRANCH_SPECIAL], &branch_lists[TAILS + BRANCH_SPECIAL], &state, 1);
   kind_lay_out_tail(&plan->tails[BRANCH_IMPACTS], &branch_lists[TAILS + BRANCH_IMPACTS], NULL, 0);
   kind_lay_out_tail(&plan->tails[BRANCH_SEGMENTS], &branch_lists[TAILS + BRANCH_SEGMENTS], NULL, 0);
-  table_put_long_name(&plan->tails[BRANCH_POINTS].records, "point_parameter", followed);
-  table_put_long_name(&plan->tails[BRANCH_SPECIAL].records, "special_parameter", followed);
+  table_put_parameter(&plan->tails[BRANCH_POINTS].records, "point_parameter", followed);
+  table_put_parameter(&plan->tails[BRANCH_SPECIAL].records, "special_parameter", followed);
   if (traced)
     curve_trace_lay_out(&branch_lists[TAILS + BRANCH_CURVES], followed, traced, NULL, 0, &plan->tails[BRANCH_CURVES]);
 }

@@ -110,7 +110,7 @@ static int read_point(const stored_file *f, uint64_t row, stored_motion *m) {
   if (!code && speeds != m->particles)
     code = refuse_set(f, "v");
   if (!code)
-    snprintf(followed->name, sizeof followed->name, "%.95s", parameter->long_name);
+    snprintf(followed->name, sizeof followed->name, "%.95s", reader_parameter(parameter));
   return code;
 }
 

@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "diagram.h"
+#include "kind/family/family_check.h"
 
 #define SOURCE .source = "[FN97] section 6"
 #define MAP    .source = "[FN97] (5.11)"
@@ -36,9 +37,9 @@ static const column diagram_columns[] = {
                   "saltation at impacts; NaN if unknown"),
     COLUMN("exponents", NUMBERS(diagram_row, exponents), "Lyapunov exponents per iterate", SOURCE, .axes = {"exponent"},
            .doc = "with `exponents: 2` or more: all of them, largest first"),
-    COLUMN("values", NUMBERS(diagram_row, values), NULL, SOURCE, .axes = {"iterate"},
+    COLUMN("values", NUMBERS(diagram_row, values), "observed variable", SOURCE, .axes = {"iterate"},
            .doc = "unless `keep: 0`: the kept iterates of the observed number, whose name is the attribute "
-                  "`long_name`; NaN where there are none"),
+                  "`observed`; NaN where there are none"),
     COLUMN("state", NUMBERS(diagram_row, state), "kept iterates", SOURCE, .axes = {"iterate", "coordinate"},
            .doc = "with `states: true`: the kept iterates"),
 };
@@ -54,8 +55,8 @@ static const column end_columns[] = {
 
 /* Of diagrams beyond grazing. */
 static const column beyond_columns[] = {
-    COLUMN("parameter", NUMBER(diagram_row, parameter), "branch.parameter", SOURCE,
-           .doc = "value of `branch.parameter`"),
+    COLUMN("parameter", NUMBER(diagram_row, parameter), "parameter that is followed", SOURCE,
+           .doc = "value of `branch.parameter`; its key is the attribute `parameter`"),
     COLUMN("d", NUMBER(diagram_row, d), "how far the periodic motion would pass the obstacle, to first order", SOURCE,
            .doc = "penetration of the periodic motion without the obstacle, to first order: the d of the map"),
     COLUMN("map_period", INTEGER(diagram_row, map_period), "period of the attractor of the map, 0: none", MAP,
@@ -118,7 +119,9 @@ void diagram_lay_out(const study *s, const study_values *v, table *rows) {
     table_drop(rows, "state");
   if (keep == 0)
     table_drop(rows, "distance");
-  table_put_long_name(rows, "values", value_word(v, KEY_ITERATE_OBSERVE));
+  if (diagram_is_beyond(s))
+    table_put_parameter(rows, "parameter", family_followed(s)->name);
+  table_put_text(rows, "values", "observed", value_word(v, KEY_ITERATE_OBSERVE));
   table_put_attribute(rows, "attractor_period", "period_limit", value_number(v, KEY_ITERATE_PERIOD_LIMIT, 0));
   table_put_attribute(rows, "attractor_period", "period_tol", value_number(v, KEY_ITERATE_PERIOD_TOL, 0));
   table_lay_out(rows);

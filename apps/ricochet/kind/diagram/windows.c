@@ -104,9 +104,13 @@ const column_list diagram_window_lists[] = {
     {0}};
 
 static void lay_out(table *t, const study *s) {
+  static const char *const edges[] = {"parameter",   "low",          "high",    "low_outside", "low_inside",
+                                      "high_inside", "high_outside", "map_low", "map_high"};
   const bool maps = model_has(s, MODEL_MAP);
   table_add(t, &diagram_window_lists[ALL_WINDOWS], NULL, 0);
   table_add(t, &diagram_window_lists[maps ? WINDOWS_OF_MAPS : WINDOWS_OF_MOTIONS], NULL, 0);
+  for (size_t i = 0; i < sizeof edges / sizeof *edges; i++)
+    table_put_parameter(t, edges[i], study_sweep_at(s, study_sweeps(s) - 1)->name);
   table_lay_out(t);
 }
 

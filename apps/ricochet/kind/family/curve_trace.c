@@ -35,10 +35,10 @@ const column curve_point_columns[CURVE_POINT_COLUMNS] = {
            "0: from there towards larger values of the second parameter, 1: towards smaller ones", CURVE,
            .doc = "0: towards larger values of the second parameter, 1: towards smaller ones; both begin with the "
                   "special point, or the grazing point of the task"),
-    COLUMN("curve_parameter", NUMBER(curve_point, parameter), "the key that is followed", CURVE,
-           .doc = "the parameter that the family is followed in; its key is the attribute `long_name`"),
-    COLUMN("curve_second", NUMBER(curve_point, second), "the second key", CURVE,
-           .doc = "the second parameter; its key is the attribute `long_name`"),
+    COLUMN("curve_parameter", NUMBER(curve_point, parameter), "parameter that is followed", CURVE,
+           .doc = "the parameter that the family is followed in; its key is the attribute `parameter`"),
+    COLUMN("curve_second", NUMBER(curve_point, second), "second parameter", CURVE,
+           .doc = "the second parameter; its key is the attribute `parameter`"),
     COLUMN("curve_period", NUMBER(curve_point, period), "period", CURVE),
 };
 
@@ -47,8 +47,8 @@ void curve_trace_lay_out(const column_list lists[CURVE_LISTS], const char *follo
   kind_lay_out_tail(&tails[0], &lists[0], NULL, 0);
   table_add(&tails[0].records, &lists[1], axes, axis_count);
   table_lay_out(&tails[0].records);
-  table_put_long_name(&tails[0].records, "curve_parameter", followed);
-  table_put_long_name(&tails[0].records, "curve_second", traced);
+  table_put_parameter(&tails[0].records, "curve_parameter", followed);
+  table_put_parameter(&tails[0].records, "curve_second", traced);
   kind_lay_out_tail(&tails[1], &lists[2], NULL, 0);
 }
 

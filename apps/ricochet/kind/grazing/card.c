@@ -206,7 +206,7 @@ static void print_verdict(card *k) {
 static void print_card(card *k) {
   char outcome[TEXT], reason[TEXT];
   const reader_set *parameter = find(k, "parameter");
-  const char *followed = parameter ? parameter->long_name : "the parameter";
+  const char *followed = parameter ? reader_parameter(parameter) : "the parameter";
   print_heading(k);
   named(k, "outcome", DIGITS, outcome);
   if (strcmp(outcome, "grazing") != 0) {

@@ -50,8 +50,8 @@ static const column row_columns[] = {
                   "found; `refused`: the library does not accept the model"),
     COLUMN("reason", TEXT(grazing_row, reason, GRAZING_REASON_BYTES), "why not; empty when it does", POINT,
            .doc = "why there is no grazing point; empty if there is one"),
-    COLUMN("parameter", NUMBER(grazing_row, parameter), "the key that is followed", POINT,
-           .doc = "where, in the parameter that is followed; its key is the attribute `long_name`. For `degenerate` "
+    COLUMN("parameter", NUMBER(grazing_row, parameter), "parameter that is followed", POINT,
+           .doc = "where, in the parameter that is followed; its key is the attribute `parameter`. For `degenerate` "
                   "rows, like the next six columns, to the accuracy of the branch"),
     COLUMN("period", NUMBER(grazing_row, period), "period of the grazing motion", POINT),
     COLUMN("time", NUMBER(grazing_row, time), "when in the period it touches the obstacle", POINT,
@@ -188,7 +188,9 @@ void grazing_lay_out(const study_values *v, const char *followed, const char *tr
   table_add(&plan->rows, &grazing_lists[ROWS], axes, axis_count);
   if (windows)
     table_add(&plan->rows, &grazing_lists[WINDOWS], axes, axis_count);
-  table_put_long_name(&plan->rows, "parameter", followed);
+  table_put_parameter(&plan->rows, "parameter", followed);
+  table_put_parameter(&plan->rows, "window_low", followed);
+  table_put_parameter(&plan->rows, "window_high", followed);
   table_lay_out(&plan->rows);
   plan->tail_count = traced ? GRAZING_TAILS : 0;
   if (traced)

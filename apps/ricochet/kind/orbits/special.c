@@ -122,10 +122,11 @@ const column_list orbits_special_lists[] = {
     {LIST, COLUMNS(critical_columns), .doc = "With `stable` or `multipliers`, too:\n"},
     {0}};
 
-static void lay_out(table *t, bool critical) {
+static void lay_out(table *t, const study *s, bool critical) {
   table_add(t, &orbits_special_lists[0], NULL, 0);
   if (critical)
     table_add(t, &orbits_special_lists[1], NULL, 0);
+  table_put_parameter(t, "parameter", study_sweep_at(s, 0)->name);
   table_lay_out(t);
 }
 
@@ -182,7 +183,7 @@ static ric_status find_points(const study *s, const study_values *v, ric_poll po
 
 static int list_points(const study *s, const study_values *v, ric_poll poll, extra_rows *extra, message *why) {
   ric_error error = {.message = "out of memory"};
-  lay_out(&extra->layout, stability_wanted(v));
+  lay_out(&extra->layout, s, stability_wanted(v));
   special_rows rows = {.layout = &extra->layout, .found = {.record_bytes = extra->layout.row_bytes}};
   ric_status status = find_points(s, v, poll, &rows, &error);
   if (rows.full)
