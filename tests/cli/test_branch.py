@@ -276,6 +276,19 @@ def test_a_branch_goes_on_from_a_point_of_a_result(ricochet, folder):
     program.assert_same_data(again, own / "again.h5")
 
 
+def test_a_branch_restarts_from_a_result_of_an_earlier_version(ricochet, folder):
+    """There the long name of a data set is that of the parameter, and the group of the study is missing."""
+    path = run(ricochet, folder, WALL.replace("cross: true", "cross: true, states: true"))
+    text = WALL.replace("from: 0.05, to: 0.2, cross: true", "to: 0.09, high: 0.2") + "restart: {file: s.h5, point: 3}\n"
+    again = run(ricochet, folder, text, name="again")
+    with h5py.File(path, "r+") as file:
+        attributes = file["branch/point_parameter"].attrs
+        attributes["long_name"] = attributes["parameter"]
+        del attributes["parameter"], file["study"], file.attrs["study_values_checksum"]
+    assert "model.force" in ricochet("show", path, cwd=folder).expect_done().out
+    program.assert_same(again, run(ricochet, folder, text, name="later"))
+
+
 def test_restarts_take_impacts_and_numbers_along(ricochet, folder):
     """A point of a family along the coupling goes on along the period, of the task with that floor."""
     text = BASE.replace("at_start: [3]", "at_start: [0]\n  at_half: [3]").replace("to: 0.15\n", "to: 0.05\n  states: true\n")

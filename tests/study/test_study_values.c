@@ -102,11 +102,68 @@ static void windows_line_ends_are_accepted(void **state) {
   study_destroy(&s);
 }
 
+/* What study_each says of some keys. */
+typedef struct seen_entries {
+  study_entry gamma, floor, half, states, title;
+  double gamma_value, floors[3];
+  size_t foreign; /* keys of another kind or type of model */
+} seen_entries;
+
+static int see_entry(void *user, const study_entry *e, message *why) {
+  seen_entries *seen = user;
+  study_entry *const kept[] = {&seen->gamma, &seen->floor, &seen->half, &seen->states, &seen->title};
+  const study_key keys[] = {KEY_MODEL_GAMMA, KEY_MODEL_FLOOR, KEY_ORBIT_AT_HALF, KEY_ORBIT_STATES, KEY_TITLE};
+  (void)why;
+  for (size_t i = 0; i < 5; i++)
+    if (e->key == keys[i])
+      *kept[i] = *e;
+  if (e->key == KEY_MODEL_GAMMA)
+    seen->gamma_value = e->numbers[0];
+  if (e->key == KEY_MODEL_FLOOR)
+    memcpy(seen->floors, e->numbers, sizeof seen->floors);
+  seen->foreign += e->key == KEY_MODEL_D || e->key == KEY_BRANCH_FROM;
+  return 0;
+}
+
+static int stop_at_third(void *user, const study_entry *e, message *why) {
+  (void)e;
+  return ++*(int *)user == 3 ? refuse(why, EXIT_FILES, "stop") : 0;
+}
+
+static void every_value_is_called_for_with_swept_ones_at_the_first_task(void **state) {
+  (void)state;
+  const char text[] = "kind: orbits\nmodel: {type: chain, particles: 3, gamma: 0.5, floor: [null, -2, -3]}\n"
+                      "orbit: {period: pi, at_start: [1]}\n"
+                      "sweep:\n- {parameter: model.gamma, values: [0.25, 0.125]}\n"
+                      "- {parameter: 'model.floor[2]', values: [-7, -8]}\n"
+                      "- {parameter: 'model.floor[1]', values: [-5]}\n";
+  study *s = parsed(text, NULL, 0);
+  seen_entries seen = {0};
+  message why = {{0}};
+  int calls = 0;
+  assert_int_equal(study_each(s, see_entry, &seen, &why), 0);
+  assert_true(seen.gamma.given && !seen.gamma.list && seen.gamma_value == 0.25);
+  assert_true(seen.floor.given && seen.floor.list && seen.floor.count == 3);
+  assert_true(seen.floors[0] == -INFINITY && seen.floors[1] == -5 && seen.floors[2] == -7);
+  assert_true(!seen.half.given && seen.half.list && seen.half.count == 0);
+  assert_true(!seen.states.given && seen.states.numbers[0] == 1);
+  assert_true(!seen.title.given && !seen.title.numbers);
+  assert_string_equal(seen.title.text, "");
+  assert_int_equal(seen.foreign, 0);
+  assert_int_equal(study_each(s, stop_at_third, &calls, &why), EXIT_FILES);
+  assert_int_equal(calls, 3);
+  study_destroy(&s);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(given_values_are_read_with_their_types), cmocka_unit_test(omitted_values_have_their_defaults),
-      cmocka_unit_test(null_floors_are_minus_infinity),         cmocka_unit_test(places_name_the_line_or_the_file),
-      cmocka_unit_test(a_byte_order_mark_is_accepted),          cmocka_unit_test(windows_line_ends_are_accepted),
+      cmocka_unit_test(given_values_are_read_with_their_types),
+      cmocka_unit_test(omitted_values_have_their_defaults),
+      cmocka_unit_test(null_floors_are_minus_infinity),
+      cmocka_unit_test(places_name_the_line_or_the_file),
+      cmocka_unit_test(a_byte_order_mark_is_accepted),
+      cmocka_unit_test(windows_line_ends_are_accepted),
+      cmocka_unit_test(every_value_is_called_for_with_swept_ones_at_the_first_task),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -12,8 +12,7 @@
  *  @param expected  what the file must hold at least, by name and shape; NULL if unknown */
 int verify_part(const file_place *at, const char *path, const plan *expected, int part, int parts);
 
-/** Stores the digest of the attributes of /study, all of them written, in the root attribute `study_values_checksum`.
- */
+/** Stores the digest of the attributes of /study, which is complete, in the root attribute `study_values_checksum`. */
 int study_put_checksum(const file_place *at, hid_t file);
 
 /* Checksums of the global heaps, the only data of a result for which HDF5 has none.
