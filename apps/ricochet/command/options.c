@@ -9,7 +9,8 @@
 
 #include "command.h"
 
-double parse_duration(const char *text) {
+/* Seconds of "30", "30s", "55m", "2h", "1.5h", "1d"; -1 when it is none of these or not positive. */
+static double parse_duration(const char *text) {
   static const struct {
     const char *unit;
     double seconds;

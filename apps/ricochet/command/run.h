@@ -31,9 +31,6 @@ typedef struct run_options {
 int run_options_parse(int argc, char **argv, run_options *o, message *why);
 void run_options_clear(run_options *o);
 
-/** Seconds of "30", "30s", "55m", "2h", "1.5h", "1d"; -1 when it is none of these or not positive. */
-double parse_duration(const char *text);
-
 /* --- output.c: the output of a run: its paths, the lock on it, and what is there already. */
 
 typedef struct output {

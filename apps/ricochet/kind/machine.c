@@ -11,7 +11,8 @@
 #include <sys/statvfs.h>
 #include <unistd.h>
 
-double machine_memory(void) {
+/* Bytes of physical memory; INFINITY if unknown. */
+static double machine_memory(void) {
   long pages = sysconf(_SC_PHYS_PAGES), bytes = sysconf(_SC_PAGESIZE);
   return pages > 0 && bytes > 0 ? (double)pages * (double)bytes : INFINITY;
 }

@@ -4,9 +4,6 @@
 
 #include "study/study.h"
 
-/** Bytes of physical memory; INFINITY if unknown. */
-double machine_memory(void);
-
 /** Bytes free in the folder of a path; INFINITY if unknown. */
 double machine_disk(const char *path);
 
