@@ -98,14 +98,16 @@ static void solve_bordered(bordered *b, double *z) {
     gsl_linalg_QRPT_solve(&a.matrix, &tau.vector, &p, &rhs.vector, &solution.vector);
 }
 
-void bordered_correction(bordered *b, double *z) {
+/* Newton's correction z [n + 1] within the hyperplane of the row. */
+static void bordered_correction(bordered *b, double *z) {
   b->residual[b->size - 1] = 0;
   solve_bordered(b, z);
   for (size_t i = 0; i < b->size; i++)
     z[i] = -z[i];
 }
 
-void bordered_null_vector(bordered *b, double *z) {
+/* The null vector z [n + 1] of (J, F_p) with <row, z> = 1. */
+static void bordered_null_vector(bordered *b, double *z) {
   memset(b->residual, 0, b->size * sizeof *b->residual);
   b->residual[b->size - 1] = 1;
   solve_bordered(b, z);

@@ -48,12 +48,6 @@ double *bordered_place(bordered *b, size_t unknowns, double *block);
  *  @returns RIC_ENUMERIC if the matrix is exactly singular, which sets `singular`; what the problem returns */
 ric_status bordered_factor(bordered *b, const double *x, const double *row, ric_error *error);
 
-/** Newton's correction z [n + 1] within the hyperplane of the row. */
-void bordered_correction(bordered *b, double *z);
-
-/** The null vector z [n + 1] of (J, F_p) with <row, z> = 1. */
-void bordered_null_vector(bordered *b, double *z);
-
 bordered_determinant bordered_det(const bordered *b);
 
 /* Workspace of a continuation.

@@ -46,15 +46,6 @@ void family_forget(ric_family *f);
 /** Evaluates a point again: its orbit is that of the family, which other motions have overwritten. */
 void family_evaluate_again(ric_family *f, const ric_family_point *point);
 
-/** Null vectors of (J, F_p) [unknowns + 1] at z: the `count` last singular vectors. GSL's error handler must be off.
- *  @returns RIC_ENUMERIC when the null space has more dimensions */
-ric_status family_null_vectors(ric_family *f, const double *z, size_t count, double *vectors, ric_error *error);
-
-/** Creates a family with other impacts that begins at a point of a family: its first z from a guess. */
-ric_status family_branch(const ric_family_problem *problem, const ric_family *from, const ric_family_point *point,
-                         const double *x, const double *times, double period, ric_family_junction *junction,
-                         ric_error *error);
-
 /** F and its derivatives by z and by one of the parameters at f->at. */
 ric_status family_residual(ric_family *f, const double *z, size_t by, double *F, double *J, double *F_p,
                            ric_error *error);
@@ -72,8 +63,5 @@ void family_tests(ric_family *f, const double *z, double *values);
 
 /** Classifies a zero of a test function; RIC_FAMILY_REGULAR: no special point. Sets kind, obstacle, time and order. */
 void family_classify_zero(ric_family *f, const double *z, size_t test, ric_family_point *point);
-
-/** State [n + m] after impact `which` of the motion evaluated last. */
-const double *family_state_after(const ric_family *f, const double *z, size_t which);
 
 #endif

@@ -31,9 +31,10 @@ void family_evaluate_again(ric_family *f, const ric_family_point *point) {
   family_forget(f);
 }
 
-ric_status family_branch(const ric_family_problem *problem, const ric_family *from, const ric_family_point *point,
-                         const double *x, const double *times, double period, ric_family_junction *junction,
-                         ric_error *error) {
+/* Creates a family with other impacts that begins at a point of a family: its first z from a guess. */
+static ric_status family_branch(const ric_family_problem *problem, const ric_family *from,
+                                const ric_family_point *point, const double *x, const double *times, double period,
+                                ric_family_junction *junction, ric_error *error) {
   size_t n = from->shooting->arcs.coordinates;
   ric_family_options options = from->options;
   options.curve.step = fmin(options.curve.step, fmax(first_step, options.curve.step_least));
@@ -79,7 +80,9 @@ static ric_status decompose(gsl_matrix *A, gsl_matrix *V, gsl_vector *S, gsl_vec
   return RIC_OK;
 }
 
-ric_status family_null_vectors(ric_family *f, const double *z, size_t count, double *vectors, ric_error *error) {
+/* Null vectors of (J, F_p) [unknowns + 1] at z: the `count` last singular vectors. GSL's error handler must be off.
+ * @returns RIC_ENUMERIC when the null space has more dimensions */
+static ric_status family_null_vectors(ric_family *f, const double *z, size_t count, double *vectors, ric_error *error) {
   size_t size = f->unknowns + 1;
   gsl_matrix *A = gsl_matrix_calloc(size, size), *V = gsl_matrix_alloc(size, size);
   gsl_vector *S = gsl_vector_alloc(size), *work = gsl_vector_alloc(size);

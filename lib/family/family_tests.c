@@ -229,7 +229,8 @@ static size_t sequence_index(const arc_plan *plan, size_t which) {
   return plan->kind == RIC_MOTION_EVEN ? k : (k + 1) % plan->sequence_count;
 }
 
-const double *family_state_after(const ric_family *f, const double *z, size_t which) {
+/* State [n + m] after impact `which` of the motion evaluated last. */
+static const double *family_state_after(const ric_family *f, const double *z, size_t which) {
   const arc_plan *plan = &f->shooting->arcs;
   const ric_shooting_problem *m = &f->problem.motion;
   if (which < m->start_count)

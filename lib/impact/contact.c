@@ -42,7 +42,8 @@ bool contact_persists(const ric_trajectory *tr, size_t obstacle) {
   return tr->resting[obstacle] != RESTS_NOT;
 }
 
-double departure_value(const ric_trajectory *tr, size_t obstacle) {
+/* Current value of the function whose root is a contact's next event: its gap, minus its gap while it is pressed. */
+static double departure_value(const ric_trajectory *tr, size_t obstacle) {
   double gap = ric_system_gap(tr->system, obstacle, tr->flow->time, tr->flow->q);
   return flow_contact(tr->flow, obstacle) == CONTACT_PRESSED ? -gap : gap;
 }
@@ -69,7 +70,8 @@ ric_status contact_presses(ric_trajectory *tr, size_t obstacle, departure how, r
   return how == DEPARTED ? RIC_OK : depart(tr, obstacle, how, error);
 }
 
-ric_status contact_rests(ric_trajectory *tr, size_t obstacle, ric_error *error) {
+/* It is held from now on; if it did not stick before, with an event `rest`. */
+static ric_status contact_rests(ric_trajectory *tr, size_t obstacle, ric_error *error) {
   flow_set_contact(tr->flow, obstacle, CONTACT_HELD);
   tr->locator.departure[obstacle] = DEPARTED;
   if (contact_persists(tr, obstacle))

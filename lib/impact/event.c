@@ -61,7 +61,8 @@ void impact_tangents_lose(ric_trajectory *tr, size_t obstacle, double time, ric_
   tr->tangents.time = time;
 }
 
-void impact_tangents_hold(ric_trajectory *tr, size_t obstacle) {
+/* A contact sticks from the start on, and constrains the tangent vectors. */
+static void impact_tangents_hold(ric_trajectory *tr, size_t obstacle) {
   const ric_obstacle *o = tr->system->obstacles;
   const tangents *d = &tr->flow->tangent;
   if (!carries(tr))
@@ -100,7 +101,8 @@ const double *ric_trajectory_du(const ric_trajectory *trajectory) {
   return ric_flow_du(trajectory->flow);
 }
 
-void impact_tangents_mark(ric_trajectory *tr) {
+/* Before the onset of contacts: stores what tangent vectors need. Does nothing without tangent vectors. */
+static void impact_tangents_mark(ric_trajectory *tr) {
   const ric_flow *f = tr->flow;
   size_t n = tr->system->coordinates, m = tr->system->speeds;
   if (!carries(tr))
@@ -171,7 +173,8 @@ static bool any_coupled(const ric_trajectory *tr, size_t hits) {
   return coupled;
 }
 
-ric_status impact_tangents_jump(ric_trajectory *tr, size_t hits, ric_error *error) {
+/* After the onset of contacts: propagates tangent vectors through the first `hits` of tr->impacts. */
+static ric_status impact_tangents_jump(ric_trajectory *tr, size_t hits, ric_error *error) {
   impact_tangents *c = &tr->tangents;
   tangents *d = &tr->flow->tangent, other = {.columns = d->columns, .q = c->other};
   size_t n = tr->system->coordinates, size = (n + tr->system->speeds) * d->columns;

@@ -92,7 +92,9 @@ static void ends_of_slope(const gap_piece *p, double *first, double *last) {
     *last += j * p->c[j];
 }
 
-void gap_watch_minima(gap_watch *w, const gap_piece *p, double *slope) {
+/* Looks for local minima, also one between the last polynomial of the obstacle and this.
+ * @param slope  in time at the end of the last one, NaN after an impact; set to that at the end of this one */
+static void gap_watch_minima(gap_watch *w, const gap_piece *p, double *slope) {
   double x, value, first, last, sense = copysign(1, p->length);
   ends_of_slope(p, &first, &last);
   if (*slope < 0 && sense * first > 0)
@@ -104,7 +106,8 @@ void gap_watch_minima(gap_watch *w, const gap_piece *p, double *slope) {
     find_violation(w, p);
 }
 
-void gap_watch_add(gap_watch *w, double value, double time, size_t obstacle) {
+/* Adds a minimum of an obstacle that is hit. */
+static void gap_watch_add(gap_watch *w, double value, double time, size_t obstacle) {
   keep(w, true, (gap_found){.value = value, .time = time, .obstacle = obstacle});
   if (value < -w->zero && time < w->first.time)
     w->first = (gap_found){.value = -w->zero, .time = time, .obstacle = obstacle};

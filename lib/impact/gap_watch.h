@@ -55,13 +55,6 @@ static inline bool gap_watch_cares(const gap_watch *w, bool hit, double bound, d
 /** Looks for the smallest value. */
 void gap_watch_value(gap_watch *w, const gap_piece *p);
 
-/** Looks for local minima, also one between the last polynomial of the obstacle and this.
- *  @param slope  in time at the end of the last one, NaN after an impact; set to that at the end of this one */
-void gap_watch_minima(gap_watch *w, const gap_piece *p, double *slope);
-
-/** Adds a minimum of an obstacle that is hit. */
-void gap_watch_add(gap_watch *w, double value, double time, size_t obstacle);
-
 /** The smaller of both gaps. */
 static inline const gap_found *gap_watch_least(const gap_watch *w) {
   return w->free.value <= w->own.value ? &w->free : &w->own;

@@ -106,18 +106,9 @@ ric_status contact_acceleration(ric_trajectory *tr, double t, const double *q, c
 /** Second derivative of a gap in the current state, with its own contact open. */
 ric_status gap_acceleration(ric_trajectory *tr, size_t obstacle, double *acceleration, ric_error *error);
 
-/** Before the onset of contacts: stores what tangent vectors need. Does nothing without tangent vectors, like the next
- * functions. */
-void impact_tangents_mark(ric_trajectory *tr);
-
 /** Tangent vectors are undefined at this contact. */
 void impact_tangents_lose(ric_trajectory *tr, size_t obstacle, double time, ric_saltation_kind kind);
 
-/** After the onset of contacts: propagates tangent vectors through the first `hits` of tr->impacts. */
-ric_status impact_tangents_jump(ric_trajectory *tr, size_t hits, ric_error *error);
-
-/** A contact sticks from the start on, and constrains the tangent vectors. */
-void impact_tangents_hold(ric_trajectory *tr, size_t obstacle);
 void impact_tangents_clear(impact_tangents *c);
 
 /** Removes tangent vectors that are lost. @param reason  text of why, set */
@@ -149,9 +140,6 @@ void contacts_forget_released(ric_trajectory *tr);
 /** It is pressed from now on; DEPARTED: it is clear of zero. */
 ric_status contact_presses(ric_trajectory *tr, size_t obstacle, departure how, ric_error *error);
 
-/** It is held from now on; if it did not stick before, with an event `rest`. */
-ric_status contact_rests(ric_trajectory *tr, size_t obstacle, ric_error *error);
-
 /** It is held, and sticks from a later time on. */
 ric_status contact_will_rest(ric_trajectory *tr, size_t obstacle, double time, ric_error *error);
 
@@ -163,9 +151,5 @@ double contacts_next_rest(const ric_trajectory *tr, double end);
 
 /** After a step, or the part of it up to its first event: contacts clear of zero have departed. */
 ric_status contacts_depart(ric_trajectory *tr, ric_error *error);
-
-/** Current value of the function whose root is a contact's next event: its gap, or minus its gap while it is pressed.
- */
-double departure_value(const ric_trajectory *tr, size_t obstacle);
 
 #endif

@@ -57,7 +57,4 @@ void ritz_functions_at(const ric_ritz *r, double phase, double *cosine, double *
 /** Displacements, velocities and second derivatives [n] at a time; any may be NULL. */
 void ritz_motion(const ric_ritz *r, const double *c, double period, double tau, double *q, double *v, double *bend);
 
-/** @returns RIC_EINVAL unless the equations are those of even motions of the same system with the one impact. */
-ric_status ritz_check_shooting(const ric_ritz *r, const ric_shooting *shooting, ric_error *error);
-
 #endif

@@ -18,7 +18,8 @@ enum { TRIED = 50 };
 /* Samples per function and period of the error: 32 per wave of the fastest one. */
 enum { SAMPLES = 32 };
 
-ric_status ritz_check_shooting(const ric_ritz *r, const ric_shooting *s, ric_error *error) {
+/* @returns RIC_EINVAL unless the equations are those of even motions of the same system with the one impact. */
+static ric_status ritz_check_shooting(const ric_ritz *r, const ric_shooting *s, ric_error *error) {
   const arc_plan *a = &s->arcs;
   if (s->system != r->system)
     return ric_fail(error, RIC_EINVAL, "shooting is for another system");

@@ -59,12 +59,6 @@ typedef struct piece_run {
   size_t columns;
 } piece_run;
 
-/** Derivatives of the end of a piece, s->ends, as tangent vectors. */
-static inline tangents shooting_ends(const ric_shooting *s, const piece_run *run) {
-  size_t columns = run->first_numbers + 2;
-  return (tangents){.columns = columns, .q = s->ends, .u = s->ends + s->arcs.coordinates * columns};
-}
-
 /** Sets s->x to the first state of a piece and returns the data of its run. @param output  OUTPUT_WHOLE with a spectrum
  *  only */
 piece_run shooting_begin(ric_shooting *s, size_t piece, const double *z, double period, piece_output output);
@@ -75,9 +69,6 @@ ric_status shooting_move(ric_shooting *s, const piece_run *run, const arc_watch 
 
 /** Column of the tangent vectors for a row of the first state; NO_UNKNOWN where there is none. */
 size_t shooting_column(const ric_shooting *s, const piece_run *run, size_t row);
-
-/** The gap of the obstacle that is hit at the end of the piece, and its derivative in s->gap_row. */
-ric_status shooting_gap(ric_shooting *s, const piece_run *run, size_t obstacle, double *gap, ric_error *error);
 
 /** Applies the impact at the end of the piece to s->x and s->ends. */
 ric_status shooting_hit(ric_shooting *s, const piece_run *run, ric_error *error);
@@ -100,19 +91,6 @@ ric_status shooting_evaluate(ric_shooting *shooting, const double *z, double giv
 
 /** Sets the period. @returns RIC_ENUMERIC unless z are numbers and the period is positive. */
 ric_status shooting_period(const ric_shooting *s, const double *z, double given, double *period, ric_error *error);
-
-/* Whether a system can have motions of a kind.
- *
- * The equations of shooting assume symmetries: for even motions that the system is reversible, for forced ones that
- * the forces repeat after the period, for the others that they do not depend on time. Without its symmetry a system
- * has solutions of the equations that are not motions. */
-
-/** Tests the symmetry at a state with other speeds than the first one.
- *  @param z  a solution
- *  @param why  set to the symmetry that fails, NULL when there is none
- *  @returns RIC_ECALLBACK */
-ric_status shooting_fit(ric_shooting *shooting, const double *z, double period, double tolerance, const char **why,
-                        ric_error *error);
 
 /* Orbit and multipliers of a motion from one integration, together with its equations. */
 
@@ -173,13 +151,6 @@ void shooting_spectrum_destroy(shooting_spectrum **spectrum);
  *  before the impact there. Leaves G or M in s->spectrum->matrix; or sets `grazing`. */
 ric_status shooting_spectrum_begin(ric_shooting *s, ric_error *error);
 ric_status shooting_spectrum_pass(ric_shooting *s, const piece_run *run, ric_error *error);
-
-/** Applies the saltation matrix of the impact at the end of a piece, with s->x before it, to s->spectrum->matrix; or
- *  sets `grazing`. */
-ric_status shooting_spectrum_jump(ric_shooting *s, const piece_run *run, ric_error *error);
-
-/** Sets s->spectrum->matrix to the identity. */
-void shooting_spectrum_identity(shooting_spectrum *spectrum);
 
 /** The multipliers of s->spectrum->matrix. @param m  initialised for n + m */
 ric_status shooting_multipliers(ric_shooting *s, const ric_multiplier_options *options, ric_multipliers *m,

@@ -104,8 +104,15 @@ ric_status shooting_move(ric_shooting *s, const piece_run *run, const arc_watch 
   return RIC_OK;
 }
 
-/* A gap may also depend on time explicitly: its rate less its derivative along the motion. */
-ric_status shooting_gap(ric_shooting *s, const piece_run *run, size_t obstacle, double *gap, ric_error *error) {
+/* Derivatives of the end of a piece, s->ends, as tangent vectors. */
+static tangents shooting_ends(const ric_shooting *s, const piece_run *run) {
+  size_t columns = run->first_numbers + 2;
+  return (tangents){.columns = columns, .q = s->ends, .u = s->ends + s->arcs.coordinates * columns};
+}
+
+/* The gap of the obstacle that is hit at the end of the piece, and its derivative in s->gap_row. A gap may also depend
+ * on time explicitly: its rate less its derivative along the motion. */
+static ric_status shooting_gap(ric_shooting *s, const piece_run *run, size_t obstacle, double *gap, ric_error *error) {
   const ric_system *system = s->system;
   size_t n = s->arcs.coordinates, c = run->first_numbers;
   tangents ends = shooting_ends(s, run), along = {.columns = 1, .q = s->rates, .u = s->rates + n};

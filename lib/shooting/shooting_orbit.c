@@ -41,8 +41,16 @@ static bool gaps_depend_on_time(const ric_shooting *s, double t, double later, d
   return false;
 }
 
-ric_status shooting_fit(ric_shooting *s, const double *z, double period, double tolerance, const char **why,
-                        ric_error *error) {
+/* Whether a system can have motions of a kind: tests their symmetry at a state with other speeds than the first one.
+ *
+ * The equations of shooting assume symmetries: for even motions that the system is reversible, for forced ones that
+ * the forces repeat after the period, for the others that they do not depend on time. Without its symmetry a system
+ * has solutions of the equations that are not motions.
+ * @param z  a solution
+ * @param why  set to the symmetry that fails, NULL when there is none
+ * @returns RIC_ECALLBACK */
+static ric_status shooting_fit(ric_shooting *s, const double *z, double period, double tolerance, const char **why,
+                               ric_error *error) {
   size_t n = s->arcs.coordinates, size = s->arcs.size;
   bool timed = shooting_is_even(s) || s->arcs.kind == RIC_MOTION_FORCED;
   double t = odd_part * period, later = t + (timed ? period : t), *rates = s->rates, *other = s->ends;

@@ -30,7 +30,9 @@ static ric_status move(const transfer *k, double from, double to, bool carry, ri
                          carry ? s->spectrum->matrix : NULL, NULL, error);
 }
 
-ric_status shooting_spectrum_jump(ric_shooting *s, const piece_run *run, ric_error *error) {
+/* Applies the saltation matrix of the impact at the end of a piece, with s->x before it, to s->spectrum->matrix; or
+ * sets `grazing`. */
+static ric_status shooting_spectrum_jump(ric_shooting *s, const piece_run *run, ric_error *error) {
   shooting_spectrum *k = s->spectrum;
   size_t n = s->arcs.coordinates, obstacle = run->piece->obstacle;
   double e = s->system->model->restitution(s->system, obstacle);
@@ -154,7 +156,8 @@ static double *entry(const shooting_spectrum *k, size_t row, size_t column) {
 
 /* --- the matrix --------------------------------------------------------------------------------------------------- */
 
-void shooting_spectrum_identity(shooting_spectrum *k) {
+/* Sets s->spectrum->matrix to the identity. */
+static void shooting_spectrum_identity(shooting_spectrum *k) {
   memset(k->matrix, 0, k->size * k->size * sizeof *k->matrix);
   for (size_t i = 0; i < k->size; i++)
     *entry(k, i, i) = 1;

@@ -308,7 +308,9 @@ out:
   return hdf5_close(at, access, code);
 }
 
-int skeleton_make(const plan *p, const file_place *at, skeleton_image *image) {
+/* Makes the skeleton in memory: all groups, attributes, axes and empty data sets. The caller frees `image->bytes`,
+ * also after a failure. */
+static int skeleton_make(const plan *p, const file_place *at, skeleton_image *image) {
   hid_t file = H5I_INVALID_HID;
   *image = (skeleton_image){NULL, 0};
   int code = create_in_memory(at, image, &file);

@@ -11,10 +11,6 @@ typedef struct skeleton_image {
   size_t size;
 } skeleton_image;
 
-/** Makes the skeleton in memory: all groups, attributes, axes and empty data sets. The caller frees `image->bytes`,
- * also after a failure. */
-int skeleton_make(const plan *p, const file_place *at, skeleton_image *image);
-
 /** Access properties of every writer of the file: the format of HDF5 1.10 and nothing older, so that metadata have
  *  checksums. Negative on failure. */
 hid_t skeleton_access(void);

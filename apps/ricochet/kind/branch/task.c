@@ -380,12 +380,11 @@ static bool branch_wants(const study *s, const document *d, study_key key) {
   return !(key == KEY_ORBIT_PERIOD && branch_restarts(s)) && family_wants(s, d, key);
 }
 
-extern const kind kind_branch;
 const kind kind_branch = {.choice = {.name = "branch",
                                      .summary = "a family of periodic motions along a parameter",
                                      .groups = "pattern|start|family|trace|branch",
                                      .features = MODEL_SYSTEM,
-                                     .complete = family_complete,
+                                     .complete = family_complete_study,
                                      .wants = branch_wants,
                                      .check = branch_check},
                           .resolve = branch_resolve,

@@ -57,7 +57,7 @@ static int name_observed(study *s, message *why) {
 }
 
 int diagram_complete(study *s, const document *d, message *why) {
-  const int code = diagram_is_beyond(s) ? family_complete(s, d, why) : 0;
+  const int code = diagram_is_beyond(s) ? family_complete_study(s, d, why) : 0;
   return code ? code : name_observed(s, why);
 }
 

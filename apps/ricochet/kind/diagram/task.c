@@ -198,7 +198,6 @@ static int diagram_evaluate(worker *w, const kind_plan *plan, task_range tasks, 
   return status == RIC_OK ? 0 : -1;
 }
 
-extern const kind kind_diagram, kind_basin;
 const kind kind_diagram = {
     .choice = {.name = "diagram",
                .summary = "the attractor of a map, or of a motion on a section, at every grid point",

@@ -118,7 +118,7 @@ static int read_traced(study *s, const document *d, message *why) {
   return check_values(s, d, followed, firsts, sizeof firsts / sizeof *firsts, why);
 }
 
-int family_complete(study *s, const document *d, message *why) {
+int family_complete_study(study *s, const document *d, message *why) {
   const int code = read_followed(s, d, why);
   return code ? code : read_traced(s, d, why);
 }

@@ -4,9 +4,9 @@
 
 #include "study/check.h"
 
-/* Hooks of these kinds (schema_choice). family_complete finds the continuation parameter and the second parameter of
- * curves, and sets the value of an omitted parameter or of an omitted start. */
-int family_complete(study *s, const document *d, message *why);
+/* Hooks of these kinds (schema_choice). family_complete_study finds the continuation parameter and the second parameter
+ * of curves, and sets the value of an omitted parameter or of an omitted start. */
+int family_complete_study(study *s, const document *d, message *why);
 bool family_wants(const study *s, const document *d, study_key key);
 int family_check(const study *s, const document *d, message *why);
 

@@ -120,11 +120,10 @@ static int grazing_complete(study *s, const document *d, message *why) {
   static const char text[] = "orbit.motion = even, but kind: grazing needs forced, conservative or autonomous motions";
   const int node = check_node_of_key(s, KEY_ORBIT_MOTION);
   if (strcmp(study_word(s, KEY_ORBIT_MOTION), "even") != 0)
-    return family_complete(s, d, why);
+    return family_complete_study(s, d, why);
   return node ? document_refuse(d, node, why, "%s", text) : check_refuse(s, why, "%s", text);
 }
 
-extern const kind kind_grazing;
 const kind kind_grazing = {.choice = {.name = "grazing",
                                       .summary = "where a family first grazes an obstacle, and what follows there",
                                       .groups = "pattern|start|family|trace|grazing",

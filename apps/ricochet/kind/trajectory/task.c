@@ -443,7 +443,6 @@ static int trajectory_check(const study *s, const document *d, message *why) {
   return refused ? refused : pattern_check(s, d, false, why);
 }
 
-extern const kind kind_trajectory;
 const kind kind_trajectory = {.choice = {.name = "trajectory",
                                          .summary = "the motion from a state, or from an orbit, at every grid point",
                                          .groups = "pattern|start|time",
