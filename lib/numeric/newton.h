@@ -19,7 +19,7 @@ typedef struct newton_problem {
 
 /** @param z  [unknowns] guess; set to the solution, or to the last iterate
  *  @param tolerance  of the largest residual, relative to 1 + the largest unknown. Residuals up to 10^4 times it that
- * no longer decrease count as rounding
+ *                    no longer decrease count as rounding
  *  @param iterations  set
  *  @returns RIC_ENUMERIC if it does not converge, with the remaining residual; what `residual` returns; RIC_ENOMEM. */
 ric_status newton_solve(const newton_problem *problem, double *z, double tolerance, int *iterations, ric_error *error);

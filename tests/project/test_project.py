@@ -9,7 +9,7 @@ import subprocess
 ORDER = ["base", "study", "run", "result", "model", "kind", "command"]
 FORBIDDEN = {("model", "run"), ("model", "result"), ("kind", "run")}  # what tasks compute knows no rank and no checkpoint
 KINDS = {  # what the folder of a kind uses of others
-    "family": {"trajectory"}, "orbits": {"family", "trajectory"}, "trajectory": set(),
+    "family": {"trajectory"}, "orbits": {"trajectory"}, "trajectory": set(),
     "branch": {"family", "orbits"}, "grazing": {"family"}, "diagram": {"family", "grazing"}}  # fmt: skip
 HOMES = {"mpi.h": {"run", "result"}, "hdf5.h": {"result"}, "hdf5_hl.h": {"result"}, "yaml.h": {"study"}}
 

@@ -1,6 +1,5 @@
 #include "embedded.h"
 
-#include <stddef.h>
 #include <string.h>
 
 const char *embedded_find(const embedded_text *list, const char *name) {

@@ -21,13 +21,13 @@ typedef struct tail {
   const char *offset, *meaning; /* the data set of the offsets, "impact_offset", and what it says */
 } tail;
 
-/** What a study will take and give. */
+/** The layout of a study's results, and what their computation needs. */
 typedef struct kind_plan {
   table rows; /* a row per task; its column `outcome`, of words, is counted at the end */
   tail tails[KIND_MOST_TAILS];
   size_t tail_count;
   uint64_t batch; /* most tasks that are evaluated at once; 0: one */
-  bool whole;     /* so many always: tasks of a batch follow from one another. They have no tails then */
+  bool whole;     /* exactly so many always: tasks of a batch follow from one another. They have no tails then */
   double memory;  /* bytes that one rank computes with */
 } kind_plan;
 
@@ -61,7 +61,8 @@ struct kind {
   const column_list *lists[KIND_MOST_LISTS];
   /** The kind that evaluates this study, where that depends on its keys; NULL: this one. */
   const kind *(*variant)(const study *s);
-  /** Lays out the results; refuses a study that cannot work or cannot fit (0 or EXIT_USAGE). */
+  /** Lays out the results; refuses a study that cannot be computed, or needs more memory than there is (0 or
+   *  EXIT_USAGE). */
   int (*plan)(const study *s, kind_plan *plan, message *why);
   /** @param poll  handed to the library; non-zero stops a task */
   int (*open)(const study *s, ric_poll poll, worker **out, message *why);
@@ -69,7 +70,7 @@ struct kind {
    *  not depend on the batch that its task is in.
    *  @param rows  [tasks.count][plan->rows.row_bytes], at a multiple of 8 bytes, of any content
    *  @param tails  [plan->tail_count], behind the records of earlier tasks; plans with tails have batches of one
-   *  @returns 0, or -1 when the poll stopped it; rows and records that it has made by then are no one's */
+   *  @returns 0, or -1 when the poll stopped it; its rows and records are then discarded */
   int (*evaluate)(worker *w, const kind_plan *plan, task_range tasks, unsigned char *rows, records *tails);
   void (*close)(worker **w);
   /** The study's extra tables, made after all tasks, on every rank alike.
@@ -80,7 +81,7 @@ struct kind {
                message *why);
   /** What `show` says of a result in sentences; NULL: nothing. */
   result_card *show;
-  /** Exchanges a study that refers to an earlier result for the complete one; NULL: none does.
+  /** Replaces a study that refers to an earlier result by the complete one; NULL: none does.
    *  @param from  that the study was read from */
   int (*resolve)(study **s, const study_source *from, message *why);
 };

@@ -2,7 +2,6 @@
 #include "kind.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 #include "study/keys.h"
 

@@ -1,7 +1,6 @@
 #include "pattern.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 
 #include "keys.h"

@@ -15,7 +15,7 @@ int pattern_check(const study *s, const document *d, bool may_be_empty, message 
 
 /** Refuses keys of the model whose default orbits with a pattern need.
  *  @param closed  the orbit follows in closed form: of a linear chain without damping with floors of restitution 1;
- * else it is found by shooting
+ *                 else it is found by shooting
  *  @param who  needs it, for messages */
 int pattern_check_model(const study *s, const document *d, bool closed, const char *who, message *why);
 

@@ -2,8 +2,6 @@
  * [FN97]. */
 #include "grazing_map.h"
 
-#include <math.h>
-
 /* Copies a list of the study; an empty one leaves zeros. */
 static void read_list(double *to, const study_values *v, study_key key) {
   for (size_t i = 0; i < value_count(v, key); i++)

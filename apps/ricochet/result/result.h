@@ -54,12 +54,12 @@ typedef struct result_header {
 
 /** Collective over all ranks: writes `path`.tmp, re-opens and verifies it, syncs, and, when `commit` agrees on rank 0,
  *  renames it to `path` and syncs the folder. On any failure the temporary file is removed and all ranks return the
- * same code with the same message, that of the lowest rank that failed.
+ *  same code with the same message, that of the lowest rank that failed.
  *
  *  The process must ignore SIGXFSZ: then a limit on the size of files gives an error like any other.
  *  @param commit  called on rank 0 just before the rename (does this run still hold the lock?); 0: yes; NULL: always
  *  @returns 0; EXIT_FILES when it cannot be written; EXIT_RUN when tables contradict each other or memory runs out;
- * what `read` or `commit` returned */
+ *           what `read` or `commit` returned */
 int result_write(const char *path, const result_header *header, const result_table *tables, size_t table_count,
                  int (*commit)(void *user, message *why), void *user, message *why);
 

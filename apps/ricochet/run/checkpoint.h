@@ -41,7 +41,7 @@ typedef struct checkpoint_tails {
 /** Opens the checkpoint in `folder` (which exists; copied) and reads the records of every file there, verifying all of
  *  their bytes. A file without a whole header counts as empty.
  *  @returns 0; EXIT_USAGE when the files belong to another study, version or shape; EXIT_FILES when they cannot be
- * read; EXIT_RUN out of memory. *out is NULL unless 0. */
+ *           read; EXIT_RUN out of memory. *out is NULL unless 0. */
 int checkpoint_open(const char *folder, const checkpoint_identity *identity, checkpoint **out, message *why);
 /** Takes &c, sets it NULL, accepts NULL. Does not sync. */
 void checkpoint_close(checkpoint **c);

@@ -1,7 +1,7 @@
 /* How the rows of keys are written. A file `*.inc` is a list of
  *
- *   KEY(KEY_TIME_SAMPLES, "time.samples", IS_INTEGER, DEFAULT("1001"), RANGE(2, 1e9), SHAPES, DOC("Number of states
- * ..."))
+ *   KEY(KEY_TIME_SAMPLES, "time.samples", IS_INTEGER, DEFAULT("1001"), RANGE(2, 1e9), SHAPES,
+ *       DOC("Number of states ..."))
  *
  * and is the only place that describes a key. KEY_DEFINE and KEY_LIST expand it to definitions and to a list.
  * KEY_GROUP, set in the file, names a group of keys that kinds and types of model accept together. */

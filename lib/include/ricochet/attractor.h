@@ -1,6 +1,6 @@
 /* Attractors: what iterates converge to in the long run.
  *
- * The iterates are those of a map (map_runner below) or the crossings of a motion with a Poincare section
+ * The iterates are those of a map (ric_map_runner below) or the crossings of a motion with a Poincare section
  * (motion_section.h). A run discards `transient` iterates and stores the `keep` iterates that follow. Exponents and
  * impacts are averaged over the `measure` iterates after the transient, which include the stored ones. Another 2
  * period_limit iterates then decide whether the attractor is periodic.

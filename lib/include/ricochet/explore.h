@@ -4,8 +4,9 @@
  * families begin add segments to a queue:
  *
  *   grazing, impact_lost   (`cross`) the family with one contact more, or less, towards the side where it exists
- *   branch_point           (`branches`) both halves of the other branch of the same equations period_doubling
- *   (`branches`) the family of twice the period; not for even motions, of which both halves would change
+ *   branch_point           (`branches`) both halves of the other branch of the same equations
+ *   period_doubling        (`branches`) the family of twice the period; not for even motions, of which both halves
+ *                          would change
  *
  * Each segment is a continuation run of its own (family.h), within the bounds and with the options of the first family,
  * until the queue is empty or the largest number of segments has been followed. Two families detect their common point

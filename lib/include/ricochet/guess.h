@@ -5,8 +5,8 @@
  *
  *   particles     for weak links, excited particles oscillate each on its on-site spring, and the others are at rest. A
  *                 spring with a cubic term has the period T at one amplitude;
- *   mode          at small energies a nonlinear normal mode is close to that of the linear part; even          the
- *   motion of the linear part with impacts at t = 0 and T/2 solves linear equations, so Newton's
+ *   mode          at small energies a nonlinear normal mode is close to that of the linear part;
+ *   even          the motion of the linear part with impacts at t = 0 and T/2 solves linear equations, so Newton's
  *                 method finds it from rest (the orbits of [JAP] (7)-(8)). With the nonlinear terms times a factor that
  *                 grows from 0 to 1 (homotopy) a continuation run at the period T leads to that of the lattice. The
  *                 family may turn back before (a fold in the factor); then there is no guess, and the message says at
@@ -17,8 +17,8 @@
  *                 lattice. With the period fixed, large-amplitude modes never reach contact, so the period is left
  *                 free.
  *
- * A Hertz contact (compliant obstacle) counts as rigid in the homotopy. In the guess a particle in such a contact at t
- * = 0 is at rest at the depth d at which the work of the contact, 2/5 k d^(5/2), equals its kinetic energy. */
+ * A Hertz contact (compliant obstacle) counts as rigid in the homotopy. In the guess a particle in such a contact at
+ * t = 0 is at rest at the depth d at which the work of the contact, 2/5 k d^(5/2), equals its kinetic energy. */
 #ifndef RICOCHET_GUESS_H
 #define RICOCHET_GUESS_H
 

@@ -3,9 +3,10 @@
  * Along the coupling gamma or the period T there are three kinds of special parameters, each with its own search:
  *
  *   resonance  a mode has an integer number of oscillations per period (resonance.h): the contact equations blow up
- *   there singular   the contact matrix is singular (ric_orbit_singular_points): the impulses are not unique, or
- *   infinite critical   multipliers leave the unit circle or return to it (ric_orbit_critical_points), by the kind of
- *   ric_critical
+ *              there
+ *   singular   the contact matrix is singular (ric_orbit_singular_points): the impulses are not unique, or infinite
+ *   critical   multipliers leave the unit circle or return to it (ric_orbit_critical_points), by the kind of
+ *              ric_critical
  *
  * Here they are one list, ordered by parameter, each with the outcome of the orbit exactly there: most resonances have
  * no effect on a pattern that does not excite the mode, and the equations at a zero of the determinant may be solvable.

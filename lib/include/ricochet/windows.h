@@ -56,7 +56,8 @@ typedef struct ric_window_line {
   /** Locates the edges of a window on the cycle: ric_window_locate_cycle or _motion, say.
    *  @param z  [size] a state on the attractor at the point of the window
    *  @param low, high  bounds of the search for edges
-   *  @param window  the fields above `On the cycle`, except impacts, are set
+   *  @param window  on entry the fields above `On the cycle`, except impacts, are set; sets impacts and those below,
+   *                 except located
    *  @returns RIC_ESTOPPED or RIC_ENOMEM to end the search with it; others leave the window not located, with the
    *           message as the reason */
   ric_status (*locate)(const double *z, double low, double high, ric_window *window, void *user, ric_error *error);

@@ -1,6 +1,5 @@
 #include "branch.h"
 
-#include <math.h>
 #include <string.h>
 
 #include "kind/family/curve_trace.h"
@@ -15,12 +14,6 @@ static const char *const origin_names[RIC_EXPLORE_ORIGINS] = {
 static const char *const special_names[RIC_FAMILY_KINDS] = {
 #define X(name, text) text,
     RIC_FAMILY_LIST(X)
-#undef X
-};
-
-static const char *const stability_names[RIC_STABILITIES] = {
-#define X(name, text) text,
-    RIC_STABILITY_LIST(X)
 #undef X
 };
 
@@ -63,8 +56,8 @@ static const column point_columns[] = {
     COLUMN("point_multiplier_max", NUMBER(branch_point, multiplier_max), "largest modulus of a Floquet multiplier",
            .source = "[JAP] (16)",
            .doc = "largest modulus of a Floquet multiplier; NaN when unknown, and with `multipliers: false`"),
-    COLUMN("point_stable", WORD(branch_point, stable, stability_names), "whether all multipliers lie in the unit disc",
-           .source = "[JAP] (16)", .doc = "as `/orbits/stable`"),
+    COLUMN("point_stable", WORD(branch_point, stable, orbit_stability_names),
+           "whether all multipliers lie in the unit disc", .source = "[JAP] (16)", .doc = "as `/orbits/stable`"),
     COLUMN("point_clearance", NUMBER(branch_point, clearance), "smallest gap of a rigid obstacle away from its impacts",
            .source = "[JAP] (9)",
            .doc = "smallest gap of a rigid obstacle away from its own impacts; NaN when there is none"),

@@ -1,5 +1,4 @@
-/* The attractors of a basin: tasks that come to the same one are found when all are done. */
-#include <math.h>
+/* The attractors of a basin: which tasks have reached the same one is decided when all are done. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -40,7 +39,7 @@ const column_list basin_attractor_lists[] = {
     {"basin", "attractor_row", COLUMNS(attractor_columns), .doc = "The attractors:\n"},
     {0}};
 
-/* The tables on their way. */
+/* The tables, and the attractors found so far. */
 typedef struct sorting {
   const kind_plan *plan;
   size_t size;

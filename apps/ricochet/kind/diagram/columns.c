@@ -1,4 +1,3 @@
-#include <math.h>
 #include <string.h>
 
 #include "diagram.h"
@@ -94,7 +93,7 @@ static size_t exponents_of(const study_values *v) {
 }
 
 static bool is_basin(const study *s) {
-  return strcmp(study_kind(s), "basin") == 0;
+  return study_is_kind(s, "basin");
 }
 
 void diagram_lay_out(const study *s, const study_values *v, table *rows) {

@@ -90,7 +90,7 @@ void iterated_clear(iterated *it) {
 /* --- a task ------------------------------------------------------------------------------------------------------- */
 
 static size_t kept_of(const iterated *it) {
-  const bool is_diagram = strcmp(study_kind(it->study), "diagram") == 0;
+  const bool is_diagram = study_is_kind(it->study, "diagram");
   return is_diagram ? (size_t)value_number(it->values, KEY_ITERATE_KEEP, 0) : 0;
 }
 

@@ -114,7 +114,7 @@ static void lay_out(table *t, const study *s) {
   table_lay_out(t);
 }
 
-/* --- what the library asks --------------------------------------------------------------------------------------- */
+/* --- callbacks of the library ------------------------------------------------------------------------------------ */
 
 /* The lines of a study, and the windows that have been found in them. */
 typedef struct window_search {

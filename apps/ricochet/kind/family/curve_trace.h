@@ -26,7 +26,7 @@ typedef struct curve_end {
   long long points;
 } curve_end;
 
-/** A curve on its way. The caller sets what is above the line. */
+/** A curve that is being followed. The caller sets what is above the line. */
 typedef struct curve_trace {
   const branch_family *b;
   const table *layout, *end_layout; /* of its points, and of its ends */
@@ -68,7 +68,7 @@ int curve_trace_add(curve_trace *t, double parameter, double second, double peri
 typedef ric_status (*curve_way)(curve_trace *t, const ric_curve_options *options, void *user, ric_curve_run *run,
                                 ric_error *error);
 
-/** Goes both ways, or one, when the curve closes.
+/** Follows the curve in both directions, or in one if it closes.
  *  @returns RIC_OK, also for a curve that does not begin; RIC_ESTOPPED; RIC_ENOMEM */
 ric_status curve_trace_follow(curve_trace *t, curve_way way, void *user);
 

@@ -16,7 +16,7 @@ static const char *const verification_names[RIC_VERIFICATION_RESULTS] = {
 #undef X
 };
 
-static const char *const stability_names[RIC_STABILITIES] = {
+const char *const orbit_stability_names[RIC_STABILITIES] = {
 #define X(name, text) text,
     RIC_STABILITY_LIST(X)
 #undef X
@@ -76,7 +76,7 @@ static const column verifier_columns[] = {
 
 static const column stability_columns[] = {
     COLUMN(
-        "stable", WORD(orbits_row, stable, stability_names), "whether all multipliers lie in the unit disc",
+        "stable", WORD(orbits_row, stable, orbit_stability_names), "whether all multipliers lie in the unit disc",
         .source = "[JAP] (16)",
         .doc =
             "whether all multipliers lie in the unit disc; `undecided`: a multiplier is too close to the unit circle; "

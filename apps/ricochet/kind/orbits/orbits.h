@@ -9,6 +9,8 @@
 
 /** Words of ric_outcome. */
 extern const char *const orbit_outcome_names[RIC_OUTCOME_COUNT];
+/** Words of ric_stability. */
+extern const char *const orbit_stability_names[RIC_STABILITIES];
 
 /** A row: the members that its columns name. */
 typedef struct orbits_row {

@@ -1,7 +1,6 @@
 #include "orbits.h"
 #include "kind/pattern.h"
 
-#include <math.h>
 #include <stdbool.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -132,7 +131,7 @@ static void lay_out(table *t, const study *s, bool critical) {
 
 /* --- for a study --- */
 
-/* The rows on their way. */
+/* The rows found so far. */
 typedef struct special_rows {
   const table *layout;
   records found;

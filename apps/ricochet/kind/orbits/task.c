@@ -1,7 +1,6 @@
 /* kind: orbits. The orbit of a pattern at every grid point. */
 #include <math.h>
 #include <stdbool.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
