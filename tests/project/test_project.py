@@ -54,6 +54,17 @@ def test_sources_are_as_clang_format_leaves_them(source):
     assert files and done.returncode == 0, done.stderr[-2000:]
 
 
+def test_files_and_functions_that_the_architecture_page_names_are_there(source):
+    page = (source / "docs" / "architecture.md").read_text()
+    sources = [p for room in ("lib", "apps") for p in (source / room).rglob("*") if p.suffix in (".c", ".h", ".inc")]
+    text = "\n".join(p.read_text(encoding="utf-8") for p in sources)
+    files = {p.name for p in sources} | set(HOMES)
+    for name in re.findall(r"`(?:[\w/]+/)?(\w+\.(?:c|h|inc))`", page):
+        assert name in files, name
+    for name in re.findall(r"`([a-z]\w*_\w+)`", page):
+        assert re.search(rf"\b{name}\b", text), name
+
+
 def words_of(text, heading):
     """Names of the chapters under a heading of the study reference, in order."""
     chapter = re.search(rf"^## {heading}\n(.*?)(?=^## |\Z)", text, re.M | re.S).group(1)

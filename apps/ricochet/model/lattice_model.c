@@ -100,13 +100,16 @@ size_t lattice_model_obstacle(const lattice_model *m, size_t particle, int side)
   return SIZE_MAX;
 }
 
+size_t lattice_model_hit(const lattice_model *m, size_t particle) {
+  const size_t floor = lattice_model_obstacle(m, particle, +1);
+  return floor != SIZE_MAX ? floor : lattice_model_obstacle(m, particle, -1);
+}
+
 ric_status lattice_model_hits(const lattice_model *m, const study_values *v, study_key key, size_t *hits,
                               ric_error *error) {
   for (size_t i = 0; i < value_count(v, key); i++) {
     const size_t particle = (size_t)value_number(v, key, i);
-    hits[i] = lattice_model_obstacle(m, particle, +1);
-    if (hits[i] == SIZE_MAX)
-      hits[i] = lattice_model_obstacle(m, particle, -1);
+    hits[i] = lattice_model_hit(m, particle);
     if (hits[i] == SIZE_MAX)
       return ric_fail(error, RIC_EINVAL, "particle %zu has no obstacle to hit", particle);
   }

@@ -30,6 +30,8 @@ void lattice_model_read(lattice_model *m, const study_values *v);
 
 /** Index of the obstacle of a particle, side +1 floor, -1 wall; SIZE_MAX when it has none. */
 size_t lattice_model_obstacle(const lattice_model *m, size_t particle, int side);
+/** Index of the obstacle that a particle hits: its floor, or its wall if it has no floor; SIZE_MAX without either. */
+size_t lattice_model_hit(const lattice_model *m, size_t particle);
 
 /** Obstacles of the particles that a key lists: their floors, or their walls where they have no floor.
  *  @param hits  set, one for each. @returns RIC_EINVAL for a particle without an obstacle */

@@ -125,14 +125,6 @@ static void take_map(iterated *it, iterated_map *slot, double *z) {
     z[i] = value_number(v, KEY_ITERATE_START, value_is_list(v, KEY_ITERATE_START) ? i : 0);
 }
 
-/* The obstacle that a particle hits: its floor, or its wall where it has no floor. */
-static size_t obstacle_of(const lattice_model *m, double particle) {
-  if (particle == -INFINITY)
-    return SIZE_MAX;
-  const size_t floor = lattice_model_obstacle(m, (size_t)particle, +1);
-  return floor != SIZE_MAX ? floor : lattice_model_obstacle(m, (size_t)particle, -1);
-}
-
 double iterated_period(const lattice_model *model) {
   static const double pi = 3.14159265358979323846;
   return model->lattice.frequency > 0 ? 2 * pi / model->lattice.frequency : 0;
@@ -158,7 +150,8 @@ static void take_motion(iterated *it, double *z) {
       strcmp(value_word(v, KEY_ITERATE_SECTION), "impact") == 0 ? RIC_SECTION_IMPACT : RIC_SECTION_STROBE;
   it->section.phase = value_number(v, KEY_ITERATE_PHASE, 0);
   it->section.wait = fmax(it->section.wait, WAIT_PERIODS * it->section.period);
-  it->section.obstacle = obstacle_of(&it->model, value_number(v, KEY_ITERATE_PARTICLE, 0));
+  const double particle = value_number(v, KEY_ITERATE_PARTICLE, 0);
+  it->section.obstacle = particle == -INFINITY ? SIZE_MAX : lattice_model_hit(&it->model, (size_t)particle);
   it->section.trajectory.flow.tolerance = tolerance > 0 ? tolerance : 0; /* null reads as minus infinity */
   it->section.trajectory.poll = it->poll;
   for (size_t i = 0; i < n; i++) {
