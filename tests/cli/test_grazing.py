@@ -353,7 +353,7 @@ def test_cards_say_what_happens_in_sentences(ricochet, folder):
     out = ricochet("show", run(ricochet, folder, SWEPT), cwd=folder).expect_done().out
     for phrase in (
         "task 1: model.frequency = 4\n",
-        "grazes at model.force = 19.2093727123: the wall of particle 0 is touched at t = 0.616713, phase 0.392612",
+        "grazes at model.force = 19.2093727123: the wall of particle 0, at t = 0.616713, phase 0.392612",
         "A_g = 16, restitution 0.8\n", "multipliers of L: 0.548817, 0.0163685", "continuous: all coefficients c_i are positive",
         "c_0, c_1, ...: 0.428613, 0.242245, ", "regime windows: windows of rising periods follow, with chaos between",
         "regime chaos: chaos follows at once", "regime overlap: ", "windows of the return map along model.force",

@@ -177,7 +177,7 @@ static void print_heading(card *k) {
 static void print_where(card *k, const char *followed) {
   char a[TEXT], b[TEXT], c[TEXT];
   printf("  grazes at %s = %s: ", followed, named(k, "parameter", DIGITS_WHERE, a));
-  printf("the %s of particle %s is touched at t = %s", named(k, "side", DIGITS, a), named(k, "particle", DIGITS, b),
+  printf("the %s of particle %s, at t = %s", named(k, "side", DIGITS, a), named(k, "particle", DIGITS, b),
          named(k, "time", DIGITS, c));
   printf(", phase %s of the period %s\n", named(k, "phase", DIGITS, a), named(k, "period", DIGITS, b));
   printf("  A_g = %s, restitution %s\n", named(k, "A_g", DIGITS, a), named(k, "restitution", DIGITS, b));
