@@ -34,6 +34,9 @@ static const study_key keys[] = {
 #undef KEY
 };
 
+/* The table that finds the place of a key (study.c) has free slots. */
+_Static_assert(sizeof keys / sizeof *keys <= STUDY_SLOTS / 2, "STUDY_SLOTS is too small for the keys");
+
 extern const embedded_text chapters[]; /* generated from *.md here and beside the models */
 
 const schema studies = {.keys = keys,

@@ -1,3 +1,4 @@
+/* The values of one task, and those that a result stores. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
