@@ -125,8 +125,9 @@ def parameter_symbol(result: Result, name: str) -> str:
 
 
 def assignment(result: Result, name: str, value: float, digits: int = 6) -> str:
-    """ "gamma = 0.1" in mathematical letters."""
-    return f"{parameter_symbol(result, name)} $= {number(value, digits)}$"
+    """ "gamma = 0.1" in mathematical letters, whose equals sign has its own spaces."""
+    symbol = parameter_symbol(result, name)
+    return f"{symbol.removesuffix('$') if symbol.endswith('$') else symbol + '$'} = {number(value, digits)}$"
 
 
 def task_words(result: Result, task: int) -> list[str]:
