@@ -166,7 +166,9 @@ class Sheet:
             if limits is None:
                 continue
             if getattr(main, f"get_{axis}scale")() == "log" and min(limits) <= 0:
-                raise FigureError(self.result.path, f"limits {limits[0]:g} {limits[1]:g} of a logarithmic axis: both > 0")
+                raise FigureError(
+                    self.result.path, f"limits {limits[0]:g} {limits[1]:g} of a logarithmic axis: both > 0"
+                )
             getattr(main, f"set_{axis}lim")(*limits)
 
     # --- the heading ---
@@ -203,7 +205,9 @@ class Sheet:
             self._below.append((legend, up))
             up += height
         small = {"size": 0.9 * size, "color": look.FAINT, "ha": "right"}
-        lines = [line for note in self._notes for line in wrapped(note.split(" "), " ", 72 * room, {"size": 0.9 * size})]
+        lines = [
+            line for note in self._notes for line in wrapped(note.split(" "), " ", 72 * room, {"size": 0.9 * size})
+        ]
         for line in reversed(lines):
             self._below.append((self.figure.text(1 - _MARGIN / self.width, 0, line, va="bottom", **small), up))
             up += 0.9 * size * _LINE / 72
@@ -242,28 +246,14 @@ def wrapped(parts: Sequence[str], separator: str, room: float, font: dict[str, A
 
 def fitted_legend(figure: Figure, entries: Sequence[Artist], room: float) -> tuple[Any, float]:
     """A legend with as many columns as `room` inches allow, and its height in inches."""
-    size = mpl.rcParams["legend.fontsize"]
-    widths = [text_width(str(entry.get_label()), size) + 3.0 * size for entry in entries]  # handle and its padding
-    columns = next(
-        (k for k in range(min(len(entries), 6), 1, -1) if _columns_width(widths, k, size) <= 72 * room), 1
-    )
-    rows = -(-len(entries) // columns)
-    legend = figure.legend(
-        handles=list(entries), loc="lower left", ncol=columns, borderaxespad=0, borderpad=0, labelspacing=0.45
-    )  # fmt: skip
-    lines = rows + sum(str(entry.get_label()).count("\n") for entry in entries[:rows])
-    return legend, lines * 1.72 * size / 72 + 0.05
-
-
-def _columns_width(widths: Sequence[float], columns: int, size: float) -> float:
-    """As matplotlib fills a legend, column by column: the first ones have one entry more."""
-    rows, longer = divmod(len(widths), columns)
-    at, whole = 0, 0.0
-    for column in range(columns):
-        height = rows + (column < longer)
-        whole += max(widths[at : at + height], default=0) + (2.0 * size if column else 0)
-        at += height
-    return whole
+    options = {"loc": "lower left", "borderaxespad": 0, "borderpad": 0, "labelspacing": 0.45}
+    for columns in range(min(len(entries), 6), 0, -1):
+        legend = figure.legend(handles=list(entries), ncol=columns, **options)
+        box = legend.get_window_extent()
+        if columns == 1 or box.width <= room * figure.dpi:
+            break
+        legend.remove()
+    return legend, box.height / figure.dpi + 0.08
 
 
 # --- files ---
