@@ -190,6 +190,9 @@ def _property(result: Result, name: str, varied: set[str]) -> str:
         return ""
     if len(others) < len(items):  # an element of it is swept
         return ""
+    has = np.flatnonzero(~np.isnan(items))
+    if len(has) == 1 and len(items) > 1:  # an obstacle of one particle
+        return f"{words.format(number(float(items[has[0]])))} of particle {has[0]}"
     return words.format(_list_text(items))
 
 
