@@ -180,9 +180,9 @@ class Sheet:
         lines: list[tuple[str, dict[str, Any]]] = []
         if title:
             big = {"size": 1.2 * size, "weight": "bold"}
-            lines += [(line, big) for line in wrapped(plain(title).split(" "), " ", room, big)]
+            lines += [(line, big) for line in wrapped(words_of(plain(title)), " ", room, big)]
         if about:
-            lines += [(line, {"size": size}) for line in wrapped(about.split(" "), " ", room, {"size": size})]
+            lines += [(line, {"size": size}) for line in wrapped(words_of(about), " ", room, {"size": size})]
         faint = {"size": size, "color": look.FAINT}
         lines += [(line, faint) for line in wrapped(parts, ", ", room, {"size": size})]
         down = _MARGIN
@@ -205,9 +205,7 @@ class Sheet:
             self._below.append((legend, up))
             up += height
         small = {"size": 0.9 * size, "color": look.FAINT, "ha": "right"}
-        lines = [
-            line for note in self._notes for line in wrapped(note.split(" "), " ", 72 * room, {"size": 0.9 * size})
-        ]
+        lines = [line for note in self._notes for line in wrapped(words_of(note), " ", 72 * room, {"size": 0.9 * size})]
         for line in reversed(lines):
             self._below.append((self.figure.text(1 - _MARGIN / self.width, 0, line, va="bottom", **small), up))
             up += 0.9 * size * _LINE / 72
@@ -232,15 +230,25 @@ def plain(text: str) -> str:
     return text.replace("$", r"\$")
 
 
+def words_of(text: str) -> list[str]:
+    """The words of a text; mathematics between dollars is part of a word, with the spaces in it."""
+    return re.findall(r"(?:\\\$|\$[^$]*\$|[^\s$])+", text)
+
+
 def wrapped(parts: Sequence[str], separator: str, room: float, font: dict[str, Any]) -> list[str]:
     """Parts joined into lines that are at most `room` points wide."""
+    look_of = font["size"], font.get("weight", "normal")
+    gap = text_width(f"x{separator}x", *look_of) - 2 * text_width("x", *look_of)
     lines: list[str] = []
+    taken = 0.0
     for part in parts:
-        longer = f"{lines[-1]}{separator}{part}" if lines else part
-        if lines and text_width(longer, font["size"], font.get("weight", "normal")) <= room:
-            lines[-1] = longer
+        own = text_width(part, *look_of)
+        if lines and taken + gap + own <= room:
+            lines[-1] += separator + part
+            taken += gap + own
         else:
             lines[-1:] = [lines[-1] + separator.rstrip(), part] if lines else [part]
+            taken = own
     return [line for line in lines if line]
 
 
