@@ -11,6 +11,9 @@
 """
 
 from ricochet.plot.catalogue import CATALOGUE, Spec, figures_of
+from ricochet.plot.grazings.criterion import criterion
+from ricochet.plot.grazings.grazing_curve import grazing_curve
+from ricochet.plot.grazings.grazing_windows import grazing_windows
 from ricochet.plot.orbits.modes import modes
 from ricochet.plot.sheet import FigureError, save, style
 
@@ -18,7 +21,10 @@ __all__ = [
     "CATALOGUE",
     "FigureError",
     "Spec",
+    "criterion",
     "figures_of",
+    "grazing_curve",
+    "grazing_windows",
     "modes",
     "save",
     "style",
