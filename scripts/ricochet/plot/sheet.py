@@ -255,7 +255,8 @@ def wrapped(parts: Sequence[str], separator: str, room: float, font: dict[str, A
 def fitted_legend(figure: Figure, entries: Sequence[Artist], room: float) -> tuple[Any, float]:
     """A legend with as many columns as `room` inches allow, and its height in inches."""
     options = {"loc": "lower left", "borderaxespad": 0, "borderpad": 0, "labelspacing": 0.45}
-    for columns in range(min(len(entries), 6), 0, -1):
+    rows = {-(-len(entries) // columns) for columns in range(1, min(len(entries), 6) + 1)}
+    for columns in sorted({-(-len(entries) // length) for length in rows}, reverse=True):  # of about equal length
         legend = figure.legend(handles=list(entries), ncol=columns, **options)
         box = legend.get_window_extent()
         if columns == 1 or box.width <= room * figure.dpi:

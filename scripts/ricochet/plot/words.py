@@ -125,9 +125,8 @@ def parameter_symbol(result: Result, name: str) -> str:
 
 
 def assignment(result: Result, name: str, value: float, digits: int = 6) -> str:
-    """ "gamma = 0.1" in mathematical letters, whose equals sign has its own spaces."""
-    symbol = parameter_symbol(result, name)
-    return f"{symbol.removesuffix('$') if symbol.endswith('$') else symbol + '$'} = {number(value, digits)}$"
+    """ "gamma = 0.1" in mathematical letters."""
+    return f"{parameter_symbol(result, name)} $= {number(value, digits)}$".replace("$ $", " ")  # one formula, not two
 
 
 def task_words(result: Result, task: int) -> list[str]:
@@ -190,9 +189,10 @@ def _property(result: Result, name: str, varied: set[str]) -> str:
         return ""
     if len(others) < len(items):  # an element of it is swept
         return ""
-    has = np.flatnonzero(~np.isnan(items))
-    if len(has) == 1 and len(items) > 1:  # an obstacle of one particle
-        return f"{words.format(number(float(items[has[0]])))} of particle {has[0]}"
+    having = np.flatnonzero(~np.isnan(items))
+    if len(having) == 1 < len(items) and name in ("model.floor", "model.wall"):
+        words = words.replace(" at", f" of particle {having[0]} at")
+        items = items[having]
     return words.format(_list_text(items))
 
 
