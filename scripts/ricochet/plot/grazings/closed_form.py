@@ -1,4 +1,4 @@
-"""Grazing of a linear oscillator beside one obstacle in closed form, to compare computed curves with."""
+"""Grazing in closed form: of a linear oscillator that is driven beside one obstacle."""
 
 from __future__ import annotations
 
@@ -10,29 +10,21 @@ from ricochet.plot.words import is_alone, obstacles
 from ricochet.result import Result
 from ricochet.sweep import Array
 
+_PAIR = {"model.force", "model.frequency"}  # the plane in which the form is a curve
 
-def grazing_force(result: Result, task: int) -> Callable[[Array], Array] | None:
-    """Amplitude of the force at which the motion without impacts grazes, as a function of its frequency:
-    |b| |k - m w^2 + i c w|. None for systems that are not linear, not alone, or have none or two obstacles."""
+
+def grazing_form(result: Result, task: int) -> Callable[[Array], Array] | None:
+    """The amplitude of the force with which the motion without impacts just touches the obstacle, of the frequency:
+    A^2 = b^2 ((k - m w^2)^2 + c^2 w^2), b the distance of the obstacle. None for other models and parameters."""
     values = result.parameters_of(task)
-    if values["orbit.motion"] != "forced" or not is_alone(result):
-        return None
-    numbers = {name: np.ravel(values.get(f"model.{name}", 0)) for name in ("mass", "stiffness", "damping")}
-    bent = [np.ravel(values.get(f"model.{name}", 0)) for name in ("quadratic", "cubic")]
-    places = np.concatenate([*obstacles(result, task).values()])
+    is_driven = values["orbit.motion"] == "forced"
+    is_plane = {values["branch.parameter"], values["branch.trace.parameter"]} == _PAIR
+    is_linear = not any(np.any(values[f"model.{term}"]) for term in ("quadratic", "cubic"))
+    places = np.concatenate(list(obstacles(result, task).values()))
     places = places[np.isfinite(places)]
-    if np.any(np.concatenate(bent)) or len(places) != 1 or values.get("model.hertz") is not None:
+    if not (is_driven and is_plane and is_linear and is_alone(result) and len(places) == 1):
         return None
-    mass, stiffness, damping = (float(numbers[name][0]) for name in ("mass", "stiffness", "damping"))
-    place = abs(float(places[0]))
-    return lambda frequency: place * np.hypot(stiffness - mass * frequency**2, damping * frequency)
-
-
-def distance(result: Result, task: int, parameters: dict[str, Array]) -> float:
-    """Largest relative distance of a curve of grazing points {parameter: its values} from the closed form, NaN if there
-    is none in the plane of these parameters."""
-    form = grazing_force(result, task)
-    if form is None or parameters.keys() != {"model.force", "model.frequency"}:
-        return np.nan
-    force, exact = np.abs(parameters["model.force"]), form(parameters["model.frequency"])
-    return float(np.max(np.abs(force - exact) / np.maximum(exact, 1e-300), initial=0))
+    mass, stiffness, damping = (
+        float(np.ravel(values[f"model.{name}"])[0]) for name in ("mass", "stiffness", "damping")
+    )
+    return lambda frequency: abs(places[0]) * np.hypot(stiffness - mass * frequency**2, damping * frequency)

@@ -17,7 +17,7 @@ from matplotlib.ticker import FuncFormatter, NullFormatter
 
 from ricochet.plot import look, scale
 from ricochet.plot.catalogue import figure
-from ricochet.plot.grazings import closed_form
+from ricochet.plot.grazings.closed_form import grazing_form
 from ricochet.plot.grazings.points import (
     CONTINUOUS,
     DISCONTINUOUS,
@@ -29,7 +29,7 @@ from ricochet.plot.grazings.points import (
     why_none,
 )
 from ricochet.plot.sheet import FigureError, Sheet
-from ricochet.plot.words import parameter_label
+from ricochet.plot.words import number, parameter_label
 from ricochet.result import Result
 from ricochet.sweep import Array
 from ricochet.table import Table
@@ -223,9 +223,13 @@ def _entries(seen: _Seen) -> list[Artist]:
 
 def _note_closed_form(sheet: Sheet, result: Result, curves: dict[int, Table], names: tuple[str, str]) -> None:
     """How far curves of motions without impacts are from the closed form of grazing."""
-    far = max(
-        closed_form.distance(result, task, dict(zip(names, (curve["parameter"], curve["second"]))))
-        for task, curve in curves.items()
-    )
-    if far < _CLOSE:
-        sheet.note(f"relative distance from the closed form of grazing: at most {far:.0e}")
+    far = []
+    for task, curve in curves.items():
+        form = grazing_form(result, task)
+        if form is None:
+            return
+        columns = dict(zip(names, (curve["parameter"], curve["second"])))
+        exact = form(columns["model.frequency"])
+        far.append(np.max(np.abs(np.abs(columns["model.force"]) - exact) / exact))
+    if max(far) < _CLOSE:
+        sheet.note(f"relative distance from the closed form of grazing: at most ${number(max(far), 1)}$")
