@@ -28,7 +28,9 @@ def oscillator(title, damping, frequency=4, to=500, branch="", windows=0, sweep=
 
 
 def traced(low, high):
-    return f", scale: log, trace: {{parameter: model.frequency, low: {low}, high: {high}, step_most: 0.05, points: 900}}"
+    return (
+        f", scale: log, trace: {{parameter: model.frequency, low: {low}, high: {high}, step_most: 0.05, points: 900}}"
+    )
 
 
 SERIES = """kind: grazing
@@ -125,7 +127,10 @@ def test_every_grazing_point_is_a_figure_of_its_own(results):
 def test_criterion_has_the_coefficients_over_the_powers_of_the_multiplier(picture, results, name, task):
     right = picture("criterion", name, task=task).axes[1]
     heads = next(marks.get_offsets() for marks in right.collections if len(marks.get_offsets()) > 1)
-    c, size = column(results[name], "grazing/coefficient")[task], np.abs(column(results[name], "grazing/multiplier")[task])
+    c, size = (
+        column(results[name], "grazing/coefficient")[task],
+        np.abs(column(results[name], "grazing/multiplier")[task]),
+    )
     i = np.arange(len(heads))
     assert len(heads) == min(13, len(c)) and (heads[:, 0] == i).all()
     assert np.allclose(heads[:, 1], c[i] / size**i, rtol=1e-12)
@@ -161,9 +166,13 @@ def test_criterion_says_where_it_grazes_and_what_follows(picture, results):
     about, system = picture("criterion", "regimes", task=1).heading[1:3]
     assert about == "continuous grazing bifurcation: windows of rising periods with chaos between them"
     assert system.startswith("one particle, damping $3$, wall at $1$, restitution $0.8$,")
-    assert rf"$\omega = 4$, force $= {force:.6g}$" in system and r"$\lambda = 0.5488$" in system and "$A_g = 16$" in system
+    assert (
+        rf"$\omega = 4$, force $= {force:.6g}$" in system and r"$\lambda = 0.5488$" in system and "$A_g = 16$" in system
+    )
     assert "$c_{0} < 0$, another impact after one return" in picture("criterion", "light").heading[1]
-    assert "undecided grazing bifurcation: c_0 is zero within \\$tolerance" in picture("criterion", "undecided").heading[1]
+    assert (
+        "undecided grazing bifurcation: c_0 is zero within \\$tolerance" in picture("criterion", "undecided").heading[1]
+    )
     heading = " ".join(picture("criterion", "five").heading)
     assert "wall of particle 4 at $1$" in heading and "dimensionless" not in heading and "none" not in heading
 

@@ -11,6 +11,7 @@
 """
 
 from ricochet.plot.catalogue import CATALOGUE, Spec, figures_of
+from ricochet.plot.columns import columns
 from ricochet.plot.grazings.criterion import criterion
 from ricochet.plot.grazings.grazing_curve import grazing_curve
 from ricochet.plot.grazings.grazing_windows import grazing_windows
@@ -21,6 +22,7 @@ __all__ = [
     "CATALOGUE",
     "FigureError",
     "Spec",
+    "columns",
     "criterion",
     "figures_of",
     "grazing_curve",
