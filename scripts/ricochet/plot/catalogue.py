@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import functools
 import inspect
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, get_type_hints
 
@@ -64,7 +64,7 @@ class Spec:
     def missing(self, result: Result) -> str:
         """Why the figure cannot be drawn of a result; "" if it can."""
         if result.kind not in self.kinds:
-            return f"a figure of kind {' or '.join(self.kinds)}, this result is of kind {result.kind}"
+            return f"{self.name} is a figure of kind {' or '.join(self.kinds)}, this result is of kind {result.kind}"
         for name in self.columns:
             if not _has(result, name):
                 asked = _ASKED_BY.get(name.rpartition("/")[2])
@@ -86,7 +86,8 @@ def _has(result: Result, name: str) -> bool:
     return name in result or (table in result and column in result[table])
 
 
-CATALOGUE: dict[str, Spec] = {}  # by name, in the order of the kinds
+KINDS = ("orbits", "trajectory", "branch", "grazing", "diagram", "basin")
+CATALOGUE: dict[str, Spec] = {}  # by name
 
 
 def figure(
@@ -113,4 +114,9 @@ def figure(
 
 def figures_of(result: Result) -> list[Spec]:
     """The figures that can be drawn of a result."""
-    return [spec for spec in CATALOGUE.values() if not spec.missing(result)]
+    return [spec for spec in in_order(CATALOGUE.values()) if not spec.missing(result)]
+
+
+def in_order(specs: Iterable[Spec]) -> list[Spec]:
+    """Figures in the order of the kinds, and of their names; those of many kinds behind."""
+    return sorted(specs, key=lambda spec: (len(spec.kinds) > 2, KINDS.index(spec.kinds[0]), spec.name))

@@ -269,11 +269,20 @@ def fitted_legend(figure: Figure, entries: Sequence[Artist], room: float) -> tup
 
 
 def save(figure: Any, path: str | os.PathLike[str]) -> None:
-    """Writes a figure, or an animation, in the format that the suffix says: .png, .pdf, .svg; .gif, .mp4."""
+    """Writes a figure, or an animation, in the format that the suffix says: .png, .pdf, .svg; .gif, .mp4. A figure is
+    there whole or not at all."""
     path = os.fspath(path)
-    undated = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}  # equal data give equal files
-    with settings():
-        if isinstance(figure, Figure):
-            figure.savefig(path, metadata=undated.get(re.sub(r".*(?=\.)", "", path)))
-        else:
+    if not isinstance(figure, Figure):
+        with settings():
             figure.save(path)
+        return
+    suffix = os.path.splitext(path)[1].lower()
+    undated = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}  # equal data give equal files
+    part = f"{path}.{os.getpid()}.part"
+    try:
+        with settings():
+            figure.savefig(part, format=suffix[1:], metadata=undated.get(suffix))
+        os.replace(part, path)
+    finally:
+        with contextlib.suppress(FileNotFoundError):
+            os.remove(part)
