@@ -46,6 +46,7 @@ class Spec:
     parts    of a result: the values of that option for which figures are drawn
     writes   suffixes of its files
     options  {keyword argument: what it says}
+    source   the figure of a source that it is: "[FN97] Figure 4"
     """
 
     name: str
@@ -60,6 +61,7 @@ class Spec:
     parts: Callable[[Result], Sequence[int]] = field(default=lambda result: ())
     writes: tuple[str, ...] = (".png", ".pdf", ".svg")
     options: Mapping[str, str] = field(default_factory=dict)
+    source: str = ""
 
     def missing(self, result: Result) -> str:
         """Why the figure cannot be drawn of a result; "" if it can."""

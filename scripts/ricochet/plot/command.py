@@ -221,7 +221,8 @@ def _print_list(specs: Sequence[Spec], natural: Sequence[Spec] | None = None, wi
     for spec in specs:
         kinds = f"{', '.join(spec.kinds)}: " if with_kinds else ""
         request = "" if natural is None or spec in natural else " (by its name only)"
-        print(f"{spec.name:{width}}  {kinds}{spec.shows}{request}")
+        source = f" ({spec.source})" if spec.source else ""
+        print(f"{spec.name:{width}}  {kinds}{spec.shows}{source}{request}")
 
 
 if __name__ == "__main__":
