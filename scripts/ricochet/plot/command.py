@@ -75,11 +75,12 @@ def _parser() -> argparse.ArgumentParser:
         parser.add_argument(f"--{axis}lim", type=float, nargs=2, metavar=("A", "B"), help=f"limits of the {axis} axis")
     group = parser.add_argument_group("options of single figures")
     for name in sorted({name for spec in CATALOGUE.values() for name in spec.options}):
-        group.add_argument(_flag(name), dest=name, default=argparse.SUPPRESS, **_argument(name))
+        group.add_argument(flag(name), dest=name, default=argparse.SUPPRESS, **_argument(name))
     return parser
 
 
-def _flag(name: str) -> str:
+def flag(name: str) -> str:
+    """The flag of an option: --xlim."""
     return "--" + name.replace("_", "-")
 
 
@@ -90,23 +91,31 @@ def _argument(name: str) -> dict[str, Any]:
     for spec in takers:
         texts.setdefault(spec.options[name], []).append(spec.name)
     text = "; ".join(f"{what} ({', '.join(names)})" for what, names in texts.items())
-    return {"help": text.replace("%", "%%"), **_typed(takers[0].hints[name], name)}
+    return {"help": text.replace("%", "%%"), **_typed(takers[0].hints[name])}
 
 
-def _typed(hint: Any, name: str) -> dict[str, Any]:
+def _typed(hint: Any) -> dict[str, Any]:
     """bool: a flag; Sequence or tuple: several words; Literal: one of some words; otherwise one word."""
     if get_origin(hint) in (Union, types.UnionType):  # X | None
         hint = next(kind for kind in get_args(hint) if kind is not type(None))
-    metavar = name[0].upper()
     if hint is bool:
         return {"action": "store_true"}
     if get_origin(hint) is Literal:
         return {"choices": get_args(hint)}
     if get_origin(hint) is tuple:
-        return {"type": get_args(hint)[0], "nargs": len(get_args(hint)), "metavar": metavar}
+        return {**_typed(get_args(hint)[0]), "nargs": len(get_args(hint))}
     if inspect.isclass(get_origin(hint)):
-        return {"type": get_args(hint)[0], "nargs": "+", "metavar": metavar}
+        return {**_typed(get_args(hint)[0]), "nargs": "+"}
     return {"type": hint, "metavar": {int: "N", float: "X", str: "WORD"}[hint]}
+
+
+def type_words(hint: Any) -> str:
+    """What stands behind the flag of an option of this type: "N", "N ...", "A|B", "" of a flag alone."""
+    typed = _typed(hint)
+    if "choices" in typed:
+        return "|".join(typed["choices"])
+    one = str(typed.get("metavar", ""))
+    return f"{one} ..." if typed.get("nargs") == "+" else " ".join([one] * typed.get("nargs", 1))
 
 
 def _positive(word: str) -> float:
@@ -149,7 +158,7 @@ def _chosen(result: Result, name: str | None, given: dict[str, Any]) -> list[Spe
     if not fitting:
         raise FigureError(result.path, f"no figure can be drawn of it; {_why_none(result)}")
     if not takers:
-        flags = " and ".join(_flag(option) for option in given)
+        flags = " and ".join(flag(option) for option in given)
         raise Unusable(f"no figure of {result.path} takes {flags}; it has {', '.join(spec.name for spec in fitting)}")
     return takers
 
@@ -166,8 +175,8 @@ def _named(result: Result, name: str, given: dict[str, Any]) -> Spec:
     spec = CATALOGUE[name]
     for option in given:
         if option not in spec.options:
-            takes = ", ".join(_flag(other) for other in spec.options) or "none"
-            raise Unusable(f"figure {name} has no option {_flag(option)}; its options are: {takes}")
+            takes = ", ".join(flag(other) for other in spec.options) or "none"
+            raise Unusable(f"figure {name} has no option {flag(option)}; its options are: {takes}")
     return spec
 
 
