@@ -110,6 +110,8 @@ def _element_label(result: Result, name: str) -> str:
         return f"start $z_{{{int(index) + 1}}}$"
     if path in ("start.q", "start.v"):
         return f"start ${path[-1]}_{{{index or 0}}}$"
+    if path in ("orbit.at_start", "orbit.at_half"):
+        return f"particle that hits at $t = {'0' if path.endswith('start') else 'T/2'}$"
     word = {"hertz": "Hertz stiffness"}.get(path.split(".")[-1], path.split(".")[-1].replace("_", " "))
     if path in ("model.cubic", "model.quadratic"):
         word += " term"
