@@ -22,6 +22,7 @@ from ricochet.sweep import Array
 X_OPTION = {"x": "the swept parameter on the horizontal axis; by default the first one"}
 _RARE = 0.01  # a word of fewer cells is marked as well, lest it drown
 _MOST_MARKED = 100  # cells of a word
+_FEWEST = 5  # points each way of a grid on which regions have a shape
 
 
 def reason(result: Result) -> str:
@@ -155,7 +156,7 @@ def draw_numbers(sheet: Sheet, axes: Axes, grid: Grid, column: Array, label: str
 def note_lone_cells(sheet: Sheet, grid: Grid, words: Array) -> None:
     """A note on cells that look like islands: those of a word that none of their neighbours has."""
     count = int(lone(grid.matrix(words)).sum())
-    if count:
+    if count and min(len(grid.x), len(grid.y)) >= _FEWEST:
         points = f"{len(grid.x)} \u00d7 {len(grid.y)}"
         sheet.note(
             f"{count} of {points} points differ from all four neighbours: they lie in regions narrower than the "

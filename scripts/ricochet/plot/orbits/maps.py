@@ -21,7 +21,7 @@ Quantity = Literal["energy", "clearance", "impulse", "none"]
 
 @figure(
     "orbits",
-    shows="outcomes over two parameters, beside them the energy of admissible orbits",
+    shows="outcomes over two parameters, beside them a quantity of the admissible orbits",
     swept=2,
     reason=grid.reason,
     natural=lambda result: "orbit.functions" not in result.swept,  # all approximate one orbit
@@ -62,4 +62,4 @@ def _words(result: Result, name: Quantity) -> str:
     if name == "impulse" and result["orbits"]["impulse"].shape[1] > 1:
         noun, numbers = outcomes.impacts(result)
         return f"impulse of {noun} {numbers[0]}"
-    return "smallest gap" if name == "clearance" else name
+    return {"clearance": "smallest gap", "energy": "energy $E$"}.get(name, name)

@@ -87,5 +87,6 @@ def draw_special(rug: Axes, panels: Sequence[Axes], special: Mapping[str, Array]
 def _bare(axes: Axes, places: list[float], names: list[str]) -> None:
     """Takes lines and ticks off a strip; names stand at the left."""
     axes.set(ylim=(0, 1), yticks=places, yticklabels=names)
-    axes.tick_params(axis="both", length=0, labelbottom=False)
+    axes.xaxis.set_visible(False)
+    axes.tick_params(axis="y", length=0)
     axes.spines[["left", "bottom"]].set_visible(False)

@@ -94,6 +94,7 @@ def _draw_words(sheet: Sheet, bands: Sequence[Axes], result: Result, order: Arra
 def _frame_parameter(sheet: Sheet, result: Result, at: Array) -> None:
     borders = strips.edges(at)
     lowest = max(sheet.panels, key=lambda axes: axes.get_subplotspec().rowspan.start)
+    lowest.xaxis.set_visible(True)
     for axes in sheet.panels:
         axes.tick_params(labelbottom=axes is lowest)
     lowest.set_xscale("log" if scale.is_geometric(at) else "linear")
@@ -162,4 +163,4 @@ def _draw_column(sheet: Sheet, axes: Axes, name: str, at: Array, sound: Array, c
         scale.label_decades(axes.yaxis)
     elif name == "clearance":
         axes.axhline(0, color=look.FAINT, linewidth=0.7, zorder=1)
-    axes.set_ylabel(_NAMES[name])
+    axes.set_ylabel("energy $E$" if name == "energy" else _NAMES[name])
