@@ -7,7 +7,6 @@ import pytest
 # What the help says, besides --output.
 HELP = {
     "animate_trajectory.py": ["/trajectory/q", "--task", "--from"],
-    "plot_approach.py": ["/orbits/outcome"],
     "plot_attractor.py": ["/diagram/outcome"],
     "plot_basin.py": ["/basin/outcome"],
     "plot_branch.py": ["/branch/outcome"],
@@ -20,16 +19,10 @@ HELP = {
     "plot_laws.py": ["/branch/point_parameter"],
     "plot_lyapunov.py": ["/trajectory/outcome"],
     "plot_manifold.py": ["/branch/point_history_q"],
-    "plot_map.py": ["/orbits/outcome"],
-    "plot_modes.py": ["/orbits/outcome"],
     "plot_motions.py": ["/branch/point_history_q"],
-    "plot_multipliers.py": ["/orbits/outcome"],
     "plot_periods.py": ["/diagram/outcome"],
     "plot_phase.py": ["/trajectory/q", "--task", "--from"],
-    "plot_ritz.py": ["/orbits/ritz_functions"],
     "plot_spacetime.py": ["/trajectory/q", "--task", "--from"],
-    "plot_stability.py": ["/orbits/outcome"],
-    "plot_sweep.py": ["/orbits/outcome"],
     "plot_trajectory.py": ["/trajectory/q", "--task", "--from"],
     "plot_windows.py": ["/window/task"],
 }
@@ -47,7 +40,7 @@ def test_help_names_the_datasets(scripts, folder, script):
 
 
 def test_help_of_a_process(scripts, folder):
-    expect_help(scripts.start("plot_modes.py", "--help", cwd=folder), HELP["plot_modes.py"])
+    expect_help(scripts.start("plot_branch.py", "--help", cwd=folder), HELP["plot_branch.py"])
 
 
 def test_scripts_start_by_their_first_line(scripts):

@@ -11,15 +11,27 @@
 """
 
 from ricochet.plot.catalogue import CATALOGUE, Spec, figures_of
+from ricochet.plot.orbits.approach import approach
+from ricochet.plot.orbits.maps import map  # noqa: A004
 from ricochet.plot.orbits.modes import modes
+from ricochet.plot.orbits.multipliers import multipliers
+from ricochet.plot.orbits.ritz import ritz
+from ricochet.plot.orbits.stability import stability
+from ricochet.plot.orbits.sweep import sweep
 from ricochet.plot.sheet import FigureError, save, style
 
 __all__ = [
     "CATALOGUE",
     "FigureError",
     "Spec",
+    "approach",
     "figures_of",
+    "map",
     "modes",
+    "multipliers",
+    "ritz",
     "save",
+    "stability",
     "style",
+    "sweep",
 ]

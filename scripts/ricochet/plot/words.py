@@ -110,6 +110,8 @@ def _element_label(result: Result, name: str) -> str:
         return f"start $z_{{{int(index) + 1}}}$"
     if path in ("start.q", "start.v"):
         return f"start ${path[-1]}_{{{index or 0}}}$"
+    if path in ("orbit.at_start", "orbit.at_half"):
+        return f"particle that hits at $t = {'0' if path.endswith('start') else 'T/2'}$"
     word = {"hertz": "Hertz stiffness"}.get(path.split(".")[-1], path.split(".")[-1].replace("_", " "))
     if path in ("model.cubic", "model.quadratic"):
         word += " term"
@@ -126,7 +128,7 @@ def parameter_symbol(result: Result, name: str) -> str:
 
 def assignment(result: Result, name: str, value: float, digits: int = 6) -> str:
     """ "gamma = 0.1" in mathematical letters."""
-    return f"{parameter_symbol(result, name)} $= {number(value, digits)}$"
+    return f"{parameter_symbol(result, name)} $= {number(value, digits)}$".replace("$ $", " ")  # one formula, not two
 
 
 def task_words(result: Result, task: int) -> list[str]:
