@@ -189,6 +189,10 @@ def _property(result: Result, name: str, varied: set[str]) -> str:
         return ""
     if len(others) < len(items):  # an element of it is swept
         return ""
+    having = np.flatnonzero(~np.isnan(items))
+    if len(having) == 1 < len(items) and name in ("model.floor", "model.wall"):
+        words = words.replace(" at", f" of particle {having[0]} at")
+        items = items[having]
     return words.format(_list_text(items))
 
 
