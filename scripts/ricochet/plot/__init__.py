@@ -11,6 +11,7 @@
 """
 
 from ricochet.plot.catalogue import CATALOGUE, Spec, figures_of
+from ricochet.plot.diagrams.diagram import diagram, scaled
 from ricochet.plot.orbits.modes import modes
 from ricochet.plot.sheet import FigureError, save, style
 
@@ -18,8 +19,10 @@ __all__ = [
     "CATALOGUE",
     "FigureError",
     "Spec",
+    "diagram",
     "figures_of",
     "modes",
     "save",
+    "scaled",
     "style",
 ]
