@@ -11,7 +11,11 @@
 """
 
 from ricochet.plot.catalogue import CATALOGUE, Spec, figures_of
+from ricochet.plot.diagrams.attractor import attractor
+from ricochet.plot.diagrams.basin import basin
 from ricochet.plot.diagrams.diagram import diagram, scaled
+from ricochet.plot.diagrams.periods import periods
+from ricochet.plot.diagrams.windows import window_table, windows
 from ricochet.plot.orbits.modes import modes
 from ricochet.plot.sheet import FigureError, save, style
 
@@ -19,10 +23,15 @@ __all__ = [
     "CATALOGUE",
     "FigureError",
     "Spec",
+    "attractor",
+    "basin",
     "diagram",
     "figures_of",
     "modes",
+    "periods",
     "save",
     "scaled",
     "style",
+    "window_table",
+    "windows",
 ]

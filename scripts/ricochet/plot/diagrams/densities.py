@@ -12,9 +12,7 @@ from ricochet.plot import look
 from ricochet.sweep import Array
 
 FIRST, SECOND = look.BLUE, look.RED  # of two densities on the same axes
-_LINES = 720  # cells over the height where iterates are periodic
-_ROWS = (240, 180, 144, 120)  # where they are not; divisors of _LINES
-_FILLED = 0.4  # cells per iterate, at most
+_ROWS, _FINER = 240, 3  # cells over the height; each is so many where the iterates are periodic
 _MOST_COLUMNS = 1000  # tasks of more share one
 _LEVELS = 15  # of each of two densities
 _FAINTEST = 0.28  # how strong the colour is where there is a single iterate
@@ -23,15 +21,12 @@ _ROUNDING = 1e-9  # values that spread less, relative to their size, are one
 
 class Density:
     """Share of the iterates of each task in cells of its values: `share` [rows, columns] between the borders `y` and
-    `x`. Periodic tasks have lines of three fine cells, which the eye finds; of the others each cell is several fine ones
-    high, as many iterates as there are."""
+    `x`. Periodic tasks have lines of three finer cells, which the eye finds."""
 
     def __init__(self, values: Array, periods: Array, edges: Array, limits: tuple[float, float]):
         """`values` [tasks, iterates] from left to right, `edges` [tasks + 1] their borders."""
-        kept = values.shape[1]
-        self.finer = _LINES // next((rows for rows in _ROWS if rows <= _FILLED * kept), _ROWS[-1])
-        self.least = 1 / kept
-        self.y = np.linspace(*limits, _LINES + 1)
+        self.least = 1 / values.shape[1]
+        self.y = np.linspace(*limits, _ROWS * _FINER + 1)
         shares = np.stack([self._share(*task) for task in zip(values, periods)], axis=1)
         together = -(-len(values) // _MOST_COLUMNS)
         starts = np.arange(0, len(values), together)
@@ -41,8 +36,8 @@ class Density:
     def _share(self, values: Array, period: int) -> Array:
         finite = values[np.isfinite(values)]
         if period == 0:
-            return np.repeat(self._counts(finite, _LINES // self.finer), self.finer) / len(values)
-        share = np.pad(self._counts(finite, _LINES) / len(values), 1)
+            return np.repeat(self._counts(finite, _ROWS), _FINER) / len(values)
+        share = np.pad(self._counts(finite, _ROWS * _FINER) / len(values), 1)
         return np.asarray(np.max([share[:-2], share[1:-1], share[2:]], axis=0))
 
     def _counts(self, values: Array, cells: int) -> Array:
