@@ -109,7 +109,8 @@ def _element_label(result: Result, name: str) -> str:
     if path == "iterate.start" and item:
         return f"start $z_{{{int(index) + 1}}}$"
     if path in ("start.q", "start.v"):
-        return f"start ${path[-1]}_{{{index or 0}}}$"
+        whole = not item and result.parameters["model.particles"] > 1
+        return f"start ${path[-1]}$ of all particles" if whole else f"start ${path[-1]}_{{{index or 0}}}$"
     word = {"hertz": "Hertz stiffness"}.get(path.split(".")[-1], path.split(".")[-1].replace("_", " "))
     if path in ("model.cubic", "model.quadratic"):
         word += " term"
