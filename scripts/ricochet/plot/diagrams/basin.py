@@ -29,7 +29,7 @@ _UNLISTED = -2  # an attractor that is not among those of the table
 _IN_PLANE = 1e-3
 _MOST_STATES = 64  # marked, of one attractor
 _SAME_STATE = 1e-4
-_MARK = {"marker": "o", "linestyle": "", "markersize": 5, "markeredgewidth": 1.2}
+_MARK = {"marker": "o", "linestyle": "", "markersize": 5.5, "markeredgewidth": 1.5}
 
 
 @figure(
@@ -113,7 +113,9 @@ def _draw_states(axes: Axes, grid: Grid, result: Result, chosen: list[int]) -> l
         for state in _states(result, attractor):
             inside = bool((np.abs(state - start)[rest] <= _IN_PLANE * np.abs(state).max()).all())
             edge, face = ("white", ink) if inside else (ink, "none")
-            axes.plot(state[across], state[up], color=ink, markeredgecolor=edge, markerfacecolor=face, zorder=4, **_MARK)
+            axes.plot(
+                state[across], state[up], color=ink, markeredgecolor=edge, markerfacecolor=face, zorder=4, **_MARK
+            )
             seen.add(inside)
     words = {True: "states of an attractor", False: "states of an attractor, beside the plane"}
     faces = {True: look.INK, False: "none"}

@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from ricochet.plot import scale
 from ricochet.plot.diagrams.lines import FROM_GRAZING, Line, is_map, label_along, multiplier, state_label
 from ricochet.plot.sheet import FigureError
-from ricochet.plot.words import number, state_symbol
+from ricochet.plot.words import number, state_symbol, with_units
 from ricochet.sweep import Array
 
 _WIDE = 100  # values over such a range are divided by the root
@@ -65,7 +65,9 @@ def scaled(line: Line, given: float | None) -> Abscissa:
     """ln sqrt(d) / ln lambda, with lambda as given or as in the study."""
     size = multiplier(line.result, line.first) if given is None else given
     if size is None:
-        raise FigureError(line.result.path, "the study gives no lambda: say --multiplier, the dominant multiplier of the map")
+        raise FigureError(
+            line.result.path, "the study gives no lambda: say --multiplier, the dominant multiplier of the map"
+        )
     if not 0 < size < 1:
         raise FigureError(line.result.path, f"lambda = {size:.6g}, this figure needs one between 0 and 1")
     return Abscissa(line, rf"$\ln\sqrt{{d}}\,/\,\ln\lambda$, with $\lambda = {number(size, 4)}$", size)
@@ -100,7 +102,7 @@ def upwards(line: Line) -> Ordinate:
 
 
 def plain(line: Line) -> Ordinate:
-    return Ordinate(state_label(_observed(line)))
+    return Ordinate(with_units(state_label(_observed(line)), line.table.attributes("values").get("units")))
 
 
 def over_root(line: Line) -> Ordinate:
@@ -124,15 +126,15 @@ def _observed(line: Line) -> str:
 
 
 def _spread_exponent(line: Line) -> float:
-    """The power of the parameter with which the values of a task spread: 1/2 beyond a continuous grazing bifurcation."""
+    """The power of the parameter with which values of a task spread: 1/2 beyond a continuous grazing bifurcation."""
     spread = np.ptp(line.table["values"][line.ways[0]], axis=1)
     known = np.isfinite(spread) & (spread > 0)
     return float(np.polyfit(np.log(line.at[known]), np.log(spread[known]), 1)[0]) if known.sum() > 1 else 0.0
 
 
 def _value_at_grazing(line: Line) -> float | None:
-    """Iterates of the map spread from it by sqrt(mu) to one side, and to the other by mu only: a line through their ends
-    on that side, where mu is small, meets it. None if there is no map."""
+    """Iterates of the map spread from it by sqrt(mu) to one side, and to the other by mu only: a line through their
+    ends on that side, where mu is small, meets it. None if there is no map."""
     whole = line.table["map_values"][line.ways[0]]
     known = np.isfinite(whole).all(axis=1)
     if known.sum() < 2:

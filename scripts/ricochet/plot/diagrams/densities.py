@@ -46,7 +46,8 @@ class Density:
     def levels(self) -> Array:
         """0: no iterate, else 1 to _LEVELS on a logarithmic scale."""
         share = np.maximum(self.share, self.least / _MOST_COLUMNS)
-        scaled = 1 + (_LEVELS - 1) * np.clip(np.log(share / self.least) / np.log(0.5 / self.least), 0, 1)
+        most = max(0.5, 2 * self.least)
+        scaled = 1 + (_LEVELS - 1) * np.clip(np.log(share / self.least) / np.log(most / self.least), 0, 1)
         return np.where(self.share > 0, np.round(scaled), 0).astype(int)
 
 

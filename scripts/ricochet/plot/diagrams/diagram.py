@@ -40,9 +40,9 @@ def diagram(result: Result, *, line: int | None = None, values: bool = False) ->
     """The density of the iterates of every task, on a logarithmic scale of colours; below it the largest Lyapunov
     exponent, periods and windows.
 
-    Of a sweep that goes back, what is found with rising values is blue, with falling ones red, both together dark: where
-    the colours part, there are two attractors. Of motions beyond grazing the motion is blue and its return map (5.11) of
-    [FN97] red, and the lowest panel is the distance between them over the extent of the map's values.
+    Of a sweep that goes back, what is found with rising values is blue, with falling ones red, both together dark:
+    where the colours part, there are two attractors. Of motions beyond grazing the motion is blue and its return map
+    (5.11) of [FN97] red, and the lowest panel is the distance between them over the extent of the map's values.
     """
     chosen = _chosen(result, line)
     x = coordinates.along(chosen)
@@ -93,9 +93,9 @@ def _drawn(line: Line, x: Abscissa, y: Ordinate) -> Figure:
         draw(sheet, sheet.panel(k, sharex=top), line, x)
     sheet.panels[-1].set_xlabel(x.label)
     if mesh is not None:
-        where = {"shrink": _TOP / sum(heights), "anchor": (0, 1), "aspect": 28, "pad": 0.015}
+        where = {"shrink": _TOP / sum(heights), "anchor": (0, 1), "aspect": 28, "pad": 0.025}
         sheet.figure.colorbar(mesh, ax=sheet.panels, label="share of the iterates in a cell", **where)
-    _note_failures(sheet, line)
+    _note_missing(sheet, line)
     return sheet.finish(varied=lines.varied(line.result), words=[*lines.line_words(line), *y.words, *_one_period(line)])
 
 
@@ -138,9 +138,11 @@ def _one_period(line: Line) -> list[str]:
     return [f"period {period[0]}" if period[0] else lines.no_period(line.result)]
 
 
-def _note_failures(sheet: Sheet, line: Line) -> None:
+def _note_missing(sheet: Sheet, line: Line) -> None:
     lost = np.isin(line.table["outcome"], ("diverged", "failed"))
     if lost.any():
         sheet.note(f"{lost.sum()} of {len(lost)} points have diverged or failed")
+    if "lyapunov" in line.table and not np.isfinite(line.table["lyapunov"]).any():
+        sheet.note("no exponent is known")
     if line.goes_back and "map_values" in line.table:
         sheet.note("the return map is not drawn where the sweep goes back")

@@ -49,7 +49,9 @@ class Windows:
     def take(self, rows: Array) -> Windows:
         """Some of them, by a condition or by their indices."""
         columns: dict[str, Any] = {name: getattr(self, name)[rows] for name in (*_NUMBERS, "reason")}
-        sides: dict[str, Any] = {name: {side: getattr(self, name)[side][rows] for side in SIDES} for name in ("edge", "kind", "closed")}
+        sides: dict[str, Any] = {
+            name: {side: getattr(self, name)[side][rows] for side in SIDES} for name in ("edge", "kind", "closed")
+        }
         return Windows(**columns, **sides)
 
     def own(self) -> Windows:

@@ -64,7 +64,9 @@ def picked(result: Result, line: int | None) -> Line:
     """The line of this number, or the only one."""
     lines = count(result)
     if line is None and lines > 1:
-        raise FigureError(result.path, f"{lines} lines along {result.swept[-1]} in it: say which, --line 0 to {lines - 1}")
+        raise FigureError(
+            result.path, f"{lines} lines along {result.swept[-1]} in it: say which, --line 0 to {lines - 1}"
+        )
     if not 0 <= (line or 0) < lines:
         raise FigureError(result.path, f"it has no line {line}, only lines 0 to {lines - 1}")
     return line_of(result, line or 0)
@@ -99,18 +101,21 @@ def line_words(line: Line) -> list[str]:
 
 
 def grazing_words(result: Result, tasks: Table) -> list[str]:
-    """Of motions beyond grazing: the value of the followed parameter at grazing, "force 39.3573 at grazing"."""
+    """Of motions beyond grazing: the value of the followed parameter at grazing, "force 39.3573 at grazing", or from
+    which to which value it varies."""
     followed = followed_parameter(result)
     if followed is None or "parameter" not in tasks:
         return []
     beyond = tasks[BEYOND] if BEYOND in tasks else np.full(len(tasks), result.parameters[BEYOND])
-    symbol, at = parameter_symbol(result, followed), tasks["parameter"] / (1 + beyond)
+    at = tasks["parameter"] / (1 + beyond)
     at = at[np.isfinite(at)]
-    if len(at) and np.ptp(at) <= 1e-6 * np.abs(at).max():
-        value = float(np.median(at))
-        return [f"{assignment(result, followed, value) if '$' in symbol else f'{symbol} ${number(value, 6)}$'} at grazing"]
-    by = result.parameters[BEYOND]
-    return [] if BEYOND in tasks else [rf"{symbol} ${number(1 + by)}$ times its value at grazing"]
+    if len(at) == 0:
+        return []
+    symbol = parameter_symbol(result, followed)
+    ends = [number(float(end), 6) for end in (at.min(), at.max())]
+    value = f"{'' if symbol.isalpha() else '= '}{ends[0]}" + (f"$ to ${ends[1]}" if ends[1] != ends[0] else "")
+    words = [f"{symbol} ${value}$ at grazing".replace("$ $", " ")]  # one formula, not two
+    return words if BEYOND in tasks else [*words, rf"$\mu = {number(result.parameters[BEYOND])}$ beyond it"]
 
 
 def followed_parameter(result: Result) -> str | None:

@@ -25,6 +25,7 @@ _COLOURS = [colour for pair in zip(_ODD, _EVEN) for colour in pair]  # of period
 _MOST = len(_COLOURS)
 _LONGER, _NONE, _LOST = range(_MOST, _MOST + 3)  # codes; that of period n is n - 1
 _FACES = [*_COLOURS, "#d9a7c7", "#2b2b2b", "#ffffff"]  # of the codes
+_FEWEST = 8  # values each way; of fewer the diagrams along them say more
 _BORDERS = {1 / 4: "1/4", 2 / 3: "2/3"}  # of regimes, in lambda
 _SAMPLES = 250  # of the map, each way, among which a number looks for its place
 _ROOM = 5  # samples from a number to the end of its region, at least
@@ -36,19 +37,21 @@ _ROOM = 5  # samples from a number to the end of its region, at least
     columns=("diagram/attractor_period",),
     swept=2,
     reason=grids.reason,
+    natural=lambda result: min(result.sweep.shape) >= _FEWEST,
     options=grids.X_OPTION,
 )
 def periods(result: Result, *, x: str | None = None) -> Figure:
     """Coloured cells; a number stands in the largest part of its period's region.
 
-    Where lambda of the example map is on an axis, lines mark 1/4 and 2/3: as d tends to zero, windows overlap below 1/4,
-    are separated by chaos between them, and there is chaos beyond 2/3.
+    Where lambda of the example map is on an axis, lines mark 1/4 and 2/3: as d tends to zero, windows overlap below
+    1/4, are separated by chaos between them, and there is chaos beyond 2/3.
     """
     grid, codes = Grid(result, x), _codes(result)
     cells = grid.matrix(codes)
     sheet, (axes,) = grids.panels_of(result, 1, 8.2, 6.9)
     grids.draw_cells(axes, grid, cells, _FACES)
     grid.frame(axes)
+    axes.set(xlabel=lines.label_along(result, grid.x_name), ylabel=lines.label_along(result, grid.y_name))
     _put_numbers(axes, grid, cells)
     sheet.legend(_entries(result, np.unique(codes)) + _draw_borders(axes, grid))
     grids.note_lone_cells(sheet, grid, codes)
@@ -85,13 +88,15 @@ def _put_numbers(axes: Axes, grid: Grid, cells: Array) -> None:
 
 
 def _innermost(region: Array) -> tuple[int, int, int]:
-    """How many layers may be taken off a region until none of it is left; row and column of a cell that stays longest."""
+    """How many layers may be taken off a region until none is left; row and column of a cell that stays longest."""
     depth, row, column = 0, 0, 0
     while region.any():
         rows, columns = np.nonzero(region)
         depth, row, column = depth + 1, int(rows[len(rows) // 2]), int(columns[len(rows) // 2])
         inner = np.zeros_like(region)
-        inner[1:-1, 1:-1] = region[1:-1, 1:-1] & region[2:, 1:-1] & region[:-2, 1:-1] & region[1:-1, 2:] & region[1:-1, :-2]
+        inner[1:-1, 1:-1] = (
+            region[1:-1, 1:-1] & region[2:, 1:-1] & region[:-2, 1:-1] & region[1:-1, 2:] & region[1:-1, :-2]
+        )
         region = inner
     return depth, row, column
 

@@ -55,7 +55,7 @@ def draw(sheet: Sheet, axes: Axes, line: Line, x: Abscissa) -> None:
     if not line.goes_back:
         entries.insert(0, Line2D([], [], color=look.INK, linewidth=2.2, label="period of the attractor"))
     sheet.legend(entries)
-    _note_missing(sheet, period, windows, rows)
+    _note_missing(sheet, line, windows, rows)
 
 
 def _found(line: Line) -> tuple[Array, Windows | None]:
@@ -64,8 +64,8 @@ def _found(line: Line) -> tuple[Array, Windows | None]:
 
 
 def _rows(period: Array, windows: Windows | None) -> list[int]:
-    """The periods that have a row, rising: all between the least and the largest, or those that occur; of too many those
-    of windows and of the most tasks."""
+    """The periods that have a row, rising: all between the least and the largest, or those that occur; of too many
+    those of windows and of the most tasks."""
     tasks = Counter(period[period > 0].tolist())
     if windows is not None:
         tasks.update({of_window: len(period) for of_window in windows.period[windows.located].tolist()})
@@ -82,7 +82,9 @@ def _draw_windows(axes: Axes, windows: Windows, rows: list[int], x: Abscissa) ->
         left, right = x.place(low, high)
         face, edge, _ = _WINDOWS[bool(impacts == 1)]
         row = rows.index(period)
-        axes.fill_between([left, right], row - _HALF, row + _HALF, facecolor=face, edgecolor=edge, linewidth=0.8, zorder=2)
+        axes.fill_between(
+            [left, right], row - _HALF, row + _HALF, facecolor=face, edgecolor=edge, linewidth=0.8, zorder=2
+        )
         _number(axes, period, row, x, (left, right))
 
 
@@ -122,13 +124,14 @@ def _frame(axes: Axes, rows: list[int]) -> None:
         axes.axhline(row + 0.5, color=look.FAINT, linewidth=0.7, linestyle=":", zorder=1)
 
 
-def _note_missing(sheet: Sheet, period: Array, windows: Windows | None, rows: list[int]) -> None:
+def _note_missing(sheet: Sheet, line: Line, windows: Windows | None, rows: list[int]) -> None:
+    period = line.table["attractor_period"]
     missing = np.setdiff1d(period[period > 0], rows)
     if len(missing):
         points = int(np.isin(period, missing).sum())
         sheet.note(f"periods {_listed(missing)} of {points} points are not shown")
-    if (period == 0).any():
-        sheet.note(f"{no_period(sheet.result)} where the panel of periods is empty")
+    if (line.table["outcome"] == "aperiodic").any():
+        sheet.note(f"{no_period(line.result)} where the panel of periods is empty")
     if windows is not None and not windows.located.all():
         sheet.note(f"windows of period {_listed(np.unique(windows.period[~windows.located]))} are not located")
 

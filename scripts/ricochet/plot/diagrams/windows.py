@@ -147,8 +147,8 @@ def _note_missing(sheet: Sheet, every: Windows, mine: Windows) -> None:
 
 def window_table(result: Result, line: int | None = None) -> str:
     """The windows of a line as text: edges, what ends them, and their relative differences from the closed form of the
-    map, which along d is exact for the map and to leading order for motions. Windows that repeat one by a multiple of its
-    period are counted only."""
+    map, which along d is exact for the map and to leading order for motions. Windows that repeat one by a multiple of
+    its period are counted only."""
     chosen = lines.picked(result, line)
     every = _found(chosen)
     held = "".join(f"{name} = {result.sweep.values[name][chosen.first]:.6g}, " for name in result.swept[:-1])
