@@ -116,6 +116,7 @@ def _draw(result: Result, names: list[str], states: Array, planes: list[Plane]) 
         axes.set_xlim(densities.limits_of(states[:, i], room=0.04))
         axes.set_ylim(densities.limits_of(states[:, j], room=0.04))
         axes.locator_params(nbins=5)
+        axes.ticklabel_format(useOffset=False)
         if mesh is not None:
             options = {"location": "bottom", "aspect": 34, "label": "share of the states in a cell"}
             sheet.figure.colorbar(mesh, ax=axes, **options)

@@ -14,6 +14,7 @@ from ricochet.table import Table
 
 MOST = 8  # lines or tasks that are drawn, spread, unless one is asked for
 BEYOND = "grazing.beyond"
+_ROUNDING = 1e-6  # relative difference of values at grazing that are one
 FROM_GRAZING = ("model.d", BEYOND)  # parameters that are zero at grazing
 
 
@@ -111,6 +112,8 @@ def grazing_words(result: Result, tasks: Table) -> list[str]:
     at = at[np.isfinite(at)]
     if len(at) == 0:
         return []
+    if np.ptp(at) <= _ROUNDING * np.abs(at).max():
+        at = np.median(at, keepdims=True)
     symbol = parameter_symbol(result, followed)
     ends = [number(float(end), 6) for end in (at.min(), at.max())]
     value = f"{'' if symbol.isalpha() else '= '}{ends[0]}" + (f"$ to ${ends[1]}" if ends[1] != ends[0] else "")
