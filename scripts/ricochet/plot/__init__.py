@@ -11,6 +11,11 @@
 """
 
 from ricochet.plot.catalogue import CATALOGUE, Spec, figures_of
+from ricochet.plot.diagrams.attractor import attractor
+from ricochet.plot.diagrams.basin import basin
+from ricochet.plot.diagrams.diagram import diagram, scaled
+from ricochet.plot.diagrams.periods import periods
+from ricochet.plot.diagrams.windows import window_table, windows
 from ricochet.plot.orbits.approach import approach
 from ricochet.plot.orbits.maps import map  # noqa: A004
 from ricochet.plot.orbits.modes import modes
@@ -25,13 +30,20 @@ __all__ = [
     "FigureError",
     "Spec",
     "approach",
+    "attractor",
+    "basin",
+    "diagram",
     "figures_of",
     "map",
     "modes",
     "multipliers",
+    "periods",
     "ritz",
     "save",
+    "scaled",
     "stability",
     "style",
     "sweep",
+    "window_table",
+    "windows",
 ]

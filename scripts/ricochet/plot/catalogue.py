@@ -27,7 +27,7 @@ _ASKED_BY = {
     "history_q": "branch.samples",
     "curve": "branch.trace",
     "values": "iterate.keep",
-    "states": "iterate.states",
+    "state": "iterate.states",
     "window": "iterate.windows",
     "window_period": "grazing.windows",
 }

@@ -109,7 +109,8 @@ def _element_label(result: Result, name: str) -> str:
     if path == "iterate.start" and item:
         return f"start $z_{{{int(index) + 1}}}$"
     if path in ("start.q", "start.v"):
-        return f"start ${path[-1]}_{{{index or 0}}}$"
+        whole = not item and result.parameters["model.particles"] > 1
+        return f"start ${path[-1]}$ of all particles" if whole else f"start ${path[-1]}_{{{index or 0}}}$"
     if path in ("orbit.at_start", "orbit.at_half"):
         return f"particle that hits at $t = {'0' if path.endswith('start') else 'T/2'}$"
     word = {"hertz": "Hertz stiffness"}.get(path.split(".")[-1], path.split(".")[-1].replace("_", " "))
@@ -191,6 +192,10 @@ def _property(result: Result, name: str, varied: set[str]) -> str:
         return ""
     if len(others) < len(items):  # an element of it is swept
         return ""
+    having = np.flatnonzero(~np.isnan(items))
+    if len(having) == 1 < len(items) and name in ("model.floor", "model.wall"):
+        words = words.replace(" at", f" of particle {having[0]} at")
+        items = items[having]
     return words.format(_list_text(items))
 
 
