@@ -14,7 +14,7 @@ from ricochet.sweep import Array
 _LABELS = {
     "model.gamma": r"coupling $\gamma$",
     "orbit.period": r"period $T$",
-    "orbit.energy": "energy",
+    "orbit.energy": "energy $E$",
     "model.hertz": r"stiffness $k$ of the Hertz contacts",
     "model.frequency": r"frequency $\omega$ of the force",
     "model.force": "amplitude of the force",
@@ -26,6 +26,7 @@ _LABELS = {
 _SYMBOLS = {
     "model.gamma": r"\gamma",
     "orbit.period": "T",
+    "orbit.energy": "E",
     "model.hertz": "k",
     "model.frequency": r"\omega",
     "model.lambda": r"\lambda",
@@ -198,7 +199,7 @@ def _is_forced(result: Result, varied: set[str]) -> bool:
 
 
 def _list_text(items: Array) -> str:
-    texts = [r"\mathrm{none}" if np.isnan(item) else number(float(item)) for item in items]
+    texts = [r"\mathrm{none}" if np.isnan(item) else number(float(item), 6) for item in items]
     if len(set(texts)) == 1:
         return texts[0]
     if len(texts) > _MOST_ITEMS:
