@@ -185,12 +185,10 @@ def _property(result: Result, name: str, varied: set[str]) -> str:
     if name == "model.frequency" and not _is_forced(result, varied):
         return ""
     items = np.atleast_1d(value)
-    others = [item for i, item in enumerate(items.tolist()) if f"{name}[{i}]" not in varied]
-    if not others or all(item == usual or item != item for item in others):
+    fixed = np.array([f"{name}[{i}]" not in varied for i in range(len(items))])
+    if all(item == usual or item != item for item in items[fixed].tolist()):
         return ""
-    if len(others) < len(items):  # an element of it is swept
-        return ""
-    return words.format(_list_text(items))
+    return words.format(_list_text(items, fixed))
 
 
 def _is_forced(result: Result, varied: set[str]) -> bool:
@@ -198,8 +196,10 @@ def _is_forced(result: Result, varied: set[str]) -> bool:
     return bool((amplitude != 0).any()) or any(name.startswith("model.force") for name in varied)
 
 
-def _list_text(items: Array) -> str:
+def _list_text(items: Array, fixed: Array) -> str:
+    """The items of a list; dots for those that are swept."""
     texts = [r"\mathrm{none}" if np.isnan(item) else number(float(item), 6) for item in items]
+    texts = [text if is_fixed else r"\cdot" for text, is_fixed in zip(texts, fixed)]
     if len(set(texts)) == 1:
         return texts[0]
     if len(texts) > _MOST_ITEMS:
