@@ -124,7 +124,7 @@ def _inner_part(one: Array, other: Array) -> Array:
     if not first < last:
         return np.empty((0, 2))
     places = one + np.linspace(first, last, 2 + int(2 * _CELLS * (last - first) * np.abs(step).max()))[:, None] * step
-    return np.clip(places, 0, 1)
+    return np.asarray(np.clip(places, 0, 1))
 
 
 def _free_box(taken: Array, middle: Array) -> tuple[float, float, float, float] | None:
