@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import Any
 
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.cm import ScalarMappable
-from matplotlib.colors import LogNorm, Normalize
+from matplotlib.colors import LogNorm, Normalize, to_hex
 from matplotlib.lines import Line2D
 
 from ricochet.plot import look, scale
@@ -19,7 +18,6 @@ from ricochet.plot.words import assignment, number, parameter_label, parameter_s
 from ricochet.result import Result
 from ricochet.sweep import Array
 
-Colour = Any  # one of matplotlib's: a word, or red, green, blue and opacity
 _FEW = 7  # values that have colours and entries of their own
 
 
@@ -31,7 +29,7 @@ class Colours:
     shown    the swept parameters that the colours show
     """
 
-    of: Callable[[int, int], Colour]
+    of: Callable[[int, int], str]
     entries: list[Artist] = field(default_factory=list)
     bar: tuple[ScalarMappable, str] | None = None
     shown: tuple[str, ...] = ()
@@ -68,7 +66,7 @@ def _range(result: Result, name: str, values: Array) -> str:
         return assignment(result, name, float(values[0]))
     texts = [number(value, 6) for value in values.tolist()]
     listed = ",\\, ".join(texts) if len(texts) <= _FEW else rf"{texts[0]} \ldots {texts[-1]}"
-    return f"{parameter_symbol(result, name)} $= {listed}$"
+    return f"{parameter_symbol(result, name)} $= {listed}$".replace("$ $", " ")  # one formula, not two
 
 
 def _of_segments(result: Result, task: int) -> Colours:
@@ -88,19 +86,19 @@ def _varying(result: Result, tasks: Sequence[int]) -> str:
     return ([name for name in varied if name.startswith("model.")] or varied)[-1]
 
 
-def _shades(name: str, values: Array) -> dict[float, Colour]:
+def _shades(name: str, values: Array) -> dict[float, str]:
     """Modes and other numbers of things have colours of their own, other values the shades of a colour map."""
     if not name.startswith("model.") and len(values) <= len(look.CYCLE) and (values % 1 == 0).all():
         return dict(zip(values, look.CYCLE))
-    return dict(zip(values, look.colour_map()(np.linspace(0, 1, len(values)))))
+    return dict(zip(values, map(to_hex, look.colour_map()(np.linspace(0, 1, len(values))))))
 
 
-def _graded(drawn: Array, label: str) -> tuple[Callable[[float], Colour], tuple[ScalarMappable, str]]:
+def _graded(drawn: Array, label: str) -> tuple[Callable[[float], str], tuple[ScalarMappable, str]]:
     """Shades of a colour map for many values, and their bar."""
     norm = (LogNorm if scale.is_geometric(drawn) else Normalize)(drawn.min(), drawn.max())
     shades = look.colour_map()
-    return lambda value: shades(norm(value)), (ScalarMappable(norm, shades), label)
+    return lambda value: to_hex(shades(norm(value))), (ScalarMappable(norm, shades), label)
 
 
-def _entry(colour: Colour, label: str) -> Artist:
+def _entry(colour: str, label: str) -> Artist:
     return Line2D([], [], color=colour, linewidth=2, label=label)

@@ -40,8 +40,8 @@ _BRANCH: dict[str, Any] = {"color": "#c4c4c4", "linewidth": 1.0}
     },
 )
 def curves(result: Result, *, tasks: Sequence[int] | None = None, all: bool = False) -> Figure:
-    """Where special points lie in two parameters: each curve begins at its marker, on the branch that was followed. Of a
-    linear oscillator with one obstacle, grazing in closed form is a dashed line."""
+    """Where special points lie in two parameters: each curve begins at its marker, on the branch that was followed. Of
+    a linear oscillator with one obstacle, grazing in closed form is a dashed line."""
     chosen = family.chosen_tasks(result, tasks)
     found = _drawable(result, [curve for task in chosen for curve in _curves(result, task)], all)
     sheet = Sheet(result, 8.6, 5.4)

@@ -24,19 +24,21 @@ _SIZES = ((0.46, 0.46), (0.5, 0.36), (0.36, 0.5), (0.4, 0.4), (0.46, 0.3), (0.34
 _LABELS = (0.11, 0.09)  # of the panel, for the labels of ticks at the left and below
 
 
-def crowd(places: Array, axes: Axes) -> Array | None:
-    """The limits [2, 2] of the most crowded place, rows low and high; None if no marker hides another one.
+def crowd(places: Array, kinds: Array, axes: Axes) -> Array | None:
+    """The limits [2, 2] of the most crowded place, rows low and high; None if no marker hides one of another kind.
 
     places  of markers [marker, 2] in data
+    kinds   of the same [marker]
     """
     to_page = 72 / axes.figure.dpi
     pages = axes.transData.transform(places) * to_page
     inside = axes.transAxes.inverted().transform(pages / to_page)
     shown = np.isfinite(pages).all(axis=1) & ((inside >= 0) & (inside <= 1)).all(axis=1)
-    groups = [group for group in _groups(pages[shown]) if _hides(pages[shown][group])]
+    pages, inside, kinds = pages[shown], inside[shown], kinds[shown]
+    groups = [group for group in _groups(pages) if _hides(pages[group], kinds[group])]
     if not groups:
         return None
-    return _limits(inside[shown][max(groups, key=len)], axes)
+    return _limits(inside[max(groups, key=len)], axes)
 
 
 def draw(axes: Axes, limits: Array, curves: list[Array], paint: Callable[[Axes], None]) -> Axes | None:
@@ -85,10 +87,10 @@ def _groups(pages: Array) -> list[Array]:
     return groups
 
 
-def _hides(pages: Array) -> bool:
-    """Whether two markers at different places are so near that one hides the other."""
+def _hides(pages: Array, kinds: Array) -> bool:
+    """Whether two markers at different places are so near that one hides the other, of another kind."""
     far = np.hypot(*(pages[:, None] - pages[None]).transpose(2, 0, 1))
-    return bool(((far > 1e-6 * _HIDDEN) & (far < _HIDDEN)).any())
+    return bool(((far > 1e-6 * _HIDDEN) & (far < _HIDDEN) & (kinds[:, None] != kinds[None])).any())
 
 
 def _limits(inside: Array, axes: Axes) -> Array:

@@ -92,7 +92,7 @@ class Plane:
     def _nodes(self, segment: family.Segment) -> Array:
         return np.column_stack([segment.values(self.x), segment.values(self.y)])
 
-    def curves(self) -> list[tuple[str, Any, Array]]:
+    def curves(self) -> list[tuple[str, str, Array]]:
         """What is drawn of the segments: the look, the colour, and the nodes [node, 2] of each piece."""
         found = []
         for segment in self.segments:
@@ -110,12 +110,12 @@ class Plane:
         """Lines; motions beside which there are no others are dots."""
         for name, colour, nodes in self.curves():
             _, dashes, width = _LINES[name]
-            axes.plot(
-                *nodes.T, linestyle=dashes, linewidth=width, color=colour, zorder=2 if name == INADMISSIBLE else 3
-            )
+            depth = 2 if name == INADMISSIBLE else 3
+            axes.plot(*nodes.T, linestyle=dashes, linewidth=width, color=colour, zorder=depth)
         for segment in self.segments:
-            colour = self.colours.of(segment.task, segment.number)
-            axes.plot(*self._nodes(segment)[segment.lone()].T, ".", color=colour, markersize=5, zorder=3)
+            if segment.lone().any():
+                colour = self.colours.of(segment.task, segment.number)
+                axes.plot(*self._nodes(segment)[segment.lone()].T, ".", color=colour, markersize=5, zorder=3)
 
     def mark(self, axes: Axes, crowded: Array | None = None) -> None:
         """Markers of the special points, when the limits are known. One that lies on another is a ring around it; those
@@ -147,7 +147,7 @@ class Plane:
         self._limit(sheet, axes)
         if logarithmic:
             scale.label_decades(axes.xaxis)
-        self._mark_enlarged(axes)
+        self._mark_enlarged(sheet, axes)
         self.colours.draw_bar(sheet)
         sheet.legend(self.entries())
         for note in filter(None, [self.left_out(), *notes]):
@@ -167,13 +167,13 @@ class Plane:
                 sheet.note(scale.clip_note(heights))
         sheet.apply_limits()
 
-    def _mark_enlarged(self, axes: Axes) -> None:
+    def _mark_enlarged(self, sheet: Sheet, axes: Axes) -> None:
         """Markers, and an inset where they hide one another."""
-        limits = inset.crowd(self.at[self.sound & _solid(self.kinds)], axes)
-        if (
-            limits is not None
-            and inset.draw(axes, limits, [nodes for _, _, nodes in self.curves()], self._paint) is None
-        ):
+        solid = self.sound & _solid(self.kinds)
+        limits = inset.crowd(self.at[solid], self.kinds[solid], axes)
+        curves = [nodes for _, _, nodes in self.curves()]
+        if limits is not None and inset.draw(axes, limits, curves, self._paint) is None:
+            sheet.note("special points lie on one another: --xlim and --ylim enlarge the place")
             limits = None
         self.mark(axes, limits)
 
@@ -185,11 +185,9 @@ class Plane:
 
     def entries(self) -> list[Artist]:
         """Entries of the legend."""
-        seen = {name for name, _, _ in self.curves()}
+        seen = {name: _GREY if name == INADMISSIBLE else look.INK for name, _, _ in self.curves()}
         lines = [
-            Line2D(
-                [], [], linestyle=dashes, linewidth=width, label=text, color=_GREY if name == INADMISSIBLE else look.INK
-            )
+            Line2D([], [], linestyle=dashes, linewidth=width, label=text, color=seen[name])
             for name, (text, dashes, width) in _LINES.items()
             if name in seen
         ]
