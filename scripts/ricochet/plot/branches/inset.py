@@ -11,6 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
 from ricochet.plot import look
+from ricochet.plot.sheet import is_narrow
 from ricochet.sweep import Array
 
 _HIDDEN = 5.0  # points, between markers of which one hides the other
@@ -64,8 +65,8 @@ def _frame(inset: Axes, is_right: bool, is_above: bool) -> None:
         inset.yaxis.tick_right()
     if is_above:
         inset.xaxis.tick_top()
-    for axis in (inset.xaxis, inset.yaxis):
-        axis.set_major_locator(MaxNLocator(3))
+    inset.xaxis.set_major_locator(MaxNLocator(2 if is_narrow() else 3))
+    inset.yaxis.set_major_locator(MaxNLocator(3))
     inset.ticklabel_format(useOffset=False)
 
 

@@ -56,7 +56,7 @@ def manifold(
     points = _motions(result, task, energy_high)
     names = x or "q0", y or "v0", z or "q1"
     norm = Normalize(points["energy"].min(), points["energy"].max())
-    sheet = Sheet(result, 8.4, 5.9)
+    sheet = Sheet(result, 8.4, 5.2 if is_narrow() else 5.9)
     axes = sheet.panel(projection="3d", computed_zorder=False)
     for segment in np.unique(points["segment"]):
         part = points.where(segment=segment)

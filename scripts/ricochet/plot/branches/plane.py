@@ -37,7 +37,7 @@ _LABELS = {
 }
 _BARE = ("|",)  # markers that are lines, and hide nothing
 _TEXT = 10.0  # size of the text for which those of markers are meant
-_NEAR = 3.0  # points, between markers that lie on one another
+_NEAR = 1.5  # points, between markers that lie on one another
 _RING = 0.6  # by which a marker around another one is larger, over the size of its kind
 _SMALL = 0.6  # the size of markers in a place that an inset enlarges
 
