@@ -21,7 +21,7 @@ _NAMES = ", ".join(family.QUANTITIES)
     natural=lambda result: not family.is_modes(result),
     options={
         "x": f"against what: {_NAMES}; default: parameter",
-        "y": "what is drawn, likewise; default: amplitude of forced motions, otherwise energy",
+        "y": "what is drawn, likewise; default: amplitude of forced motions, frequency along the energy, else energy",
         "tasks": "draw these tasks only, from 0",
         "all": "solutions of the equations that are not admissible, too",
     },
