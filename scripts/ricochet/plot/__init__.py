@@ -10,6 +10,18 @@
 `figures_of(result)` lists those that can be drawn of a result, `CATALOGUE` all of them. It needs matplotlib.
 """
 
+from ricochet.plot.branches.branch import branch
+from ricochet.plot.branches.curves import curves
+from ricochet.plot.branches.frequency_energy import frequency_energy
+from ricochet.plot.branches.laws import laws
+from ricochet.plot.branches.manifold import manifold
+from ricochet.plot.branches.motions import motions
+from ricochet.plot.branches.branch import branch
+from ricochet.plot.branches.curves import curves
+from ricochet.plot.branches.frequency_energy import frequency_energy
+from ricochet.plot.branches.laws import laws
+from ricochet.plot.branches.manifold import manifold
+from ricochet.plot.branches.motions import motions
 from ricochet.plot.catalogue import CATALOGUE, Spec, figures_of
 from ricochet.plot.diagrams.attractor import attractor
 from ricochet.plot.diagrams.basin import basin
@@ -32,10 +44,16 @@ __all__ = [
     "approach",
     "attractor",
     "basin",
+    "branch",
+    "curves",
     "diagram",
     "figures_of",
+    "frequency_energy",
+    "laws",
+    "manifold",
     "map",
     "modes",
+    "motions",
     "multipliers",
     "periods",
     "ritz",

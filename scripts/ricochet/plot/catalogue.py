@@ -15,8 +15,9 @@ from typing import Any, get_type_hints
 from ricochet.plot.sheet import FigureError, settings
 from ricochet.result import Result
 
-# Which key of the study stores a column.
+# Which key of the study stores a column; by its whole name where another table has one of that name, too.
 _ASKED_BY = {
+    "branch/point/q": "branch.states",
     "q": "orbit.states",
     "v": "orbit.states",
     "multipliers": "orbit.multipliers",
@@ -69,7 +70,7 @@ class Spec:
             return f"a figure of kind {' or '.join(self.kinds)}, this result is of kind {result.kind}"
         for name in self.columns:
             if not _has(result, name):
-                asked = _ASKED_BY.get(name.rpartition("/")[2])
+                asked = _ASKED_BY.get(name) or _ASKED_BY.get(name.rpartition("/")[2])
                 return f"it has no {name}" + (f" (the study did not ask for {asked})" if asked else "")
         if self.swept is not None and len(result.swept) != self.swept:
             held = f" ({', '.join(result.swept)})" if result.swept else ""

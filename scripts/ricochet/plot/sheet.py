@@ -143,7 +143,7 @@ class Sheet:
         varied  parameters besides the swept ones that the figure shows, and its heading does not
         words   what the heading says behind the system: the task, the verdict
         """
-        self._apply_limits()
+        self.apply_limits()
         top = self._place_heading(about, [*system(self.result, varied), *words])
         bottom = self._place_below()
         whole = self.height + top + bottom
@@ -160,7 +160,8 @@ class Sheet:
 
     # --- limits ---
 
-    def _apply_limits(self) -> None:
+    def apply_limits(self) -> None:
+        """Sets the limits of the style. `finish` does so; before it, a figure whose drawing depends on its limits."""
         now, main = _style.get(), self.panels[0]
         for axis, limits in (("x", now.xlim), ("y", now.ylim)):
             if limits is None:
