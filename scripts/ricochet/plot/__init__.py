@@ -4,8 +4,8 @@
     figure = ricochet.plot.modes(result)
     ricochet.plot.save(figure, "modes.pdf")
 
-    with ricochet.plot.style(column=True, title=""):    # for a column of a journal
-        figure = ricochet.plot.sweep(result, xlim=(0, 0.19))
+    with ricochet.plot.style(column=True, title="", xlim=(0, 0.19)):    # for a column of a journal
+        figure = ricochet.plot.sweep(result)
 
 `figures_of(result)` lists those that can be drawn of a result, `CATALOGUE` all of them. It needs matplotlib.
 """

@@ -17,6 +17,7 @@ from ricochet.result import Result
     "branch",
     shows="frequency of the motions against their energy: of nonlinear modes",
     reason=family.none_begins,
+    source="[VID] Figure 2, left",
     natural=family.is_modes,
     options={
         "tasks": "draw these tasks only, from 0",

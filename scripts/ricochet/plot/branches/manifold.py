@@ -33,6 +33,7 @@ _VIEW = {"elev": 22, "azim": -58}
     columns=("branch/point/history_q", "branch/point/history_v"),
     reason=lambda result: family.none_begins(result) or _one_particle(result),
     natural=family.is_modes,
+    source="[VID] Figure 2, right",
     options={
         "task": "which task, from 0; default: the first one with a motion",
         "x": "component on the first axis, as q0 or v1; default: q0",

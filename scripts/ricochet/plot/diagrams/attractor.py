@@ -33,6 +33,7 @@ def _parts(result: Result) -> list[int]:
     "diagram",
     shows="the kept states of a task, in planes of two of their numbers",
     columns=("diagram/state",),
+    source="[FN97] Figure 6",
     natural=lambda result: result.sweep.tasks <= lines.MOST,
     part="task",
     parts=_parts,

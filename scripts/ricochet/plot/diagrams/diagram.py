@@ -32,6 +32,7 @@ def _parts(result: Result) -> list[int]:
     shows="iterates along the last sweep, with exponents, periods, windows and the distance from the return map",
     columns=("diagram/values",),
     reason=lines.needs_sweep,
+    source="[FN97] Figure 4",
     part="line",
     parts=_parts,
     options={**_LINE_OPTION, "values": "the values themselves, not over the root of the parameter"},
@@ -59,7 +60,8 @@ def _not_scalable(result: Result) -> str:
 
 @figure(
     "diagram",
-    shows="the diagram of a map as z1 / sqrt(d) over ln sqrt(d) / ln lambda, Figure 5 of [FN97]",
+    shows="the diagram of a map as z1 / sqrt(d) over ln sqrt(d) / ln lambda",
+    source="[FN97] Figure 5",
     columns=("diagram/values",),
     reason=_not_scalable,
     natural=lambda result: False,

@@ -35,6 +35,7 @@ _HITS = (  # of the particles of the pattern
     shows="positions and velocities along the sweep, a curve for each orbit",
     columns=("orbits/q", "orbits/v"),
     swept=1,
+    source="Example 1 of [JAP]",
     options={"all": "orbits that are not admissible, too", "curves": "at most so many curves, evenly picked"},
 )
 def modes(result: Result, *, all: bool = False, curves: int = 60) -> Figure:
