@@ -406,10 +406,28 @@ def test_list_elements_and_logarithmic_ranges_are_swept(ricochet, folder):
 # --- CSV ---
 
 
-def per_task(file):
-    """The data sets with one value per task."""
-    sets = file[group_of(file)].items()
-    return {name: data for name, data in sets if data.ndim == 1 and data.dims[0][0].name == "/task"}
+def elements(name, values):
+    """{name of the column: values [row]} of a data set: `q[3]` of elements, `.r` and `.i` of complex numbers."""
+    if values.ndim > 1:
+        columns = [elements(f"{name}[{k}]", values[:, k]) for k in range(values.shape[1])]
+        # of three axes the second index stands behind the first: path[0][1]
+        return {key: column for part in columns for key, column in part.items()}
+    if values.dtype.kind == "c":
+        return {f"{name}.r": values.real, f"{name}.i": values.imag}
+    return {name: values}
+
+
+def stored(data):
+    """Values of a data set, of an enum its words."""
+    words = {code: word for word, code in (h5py.check_enum_dtype(data.dtype) or {}).items()}
+    words = words or ({False: "FALSE", True: "TRUE"} if data.dtype == bool else {})
+    return np.vectorize(words.get, otypes=[object])(data[()]) if words else data[()]
+
+
+def along(file, group, axis, place=0):
+    """The data sets of a group that have this axis in this place."""
+    sets = file[group].items()
+    return {name: stored(data) for name, data in sets if data.ndim > place and data.dims[place][0].name == f"/{axis}"}
 
 
 def matches(text, value):
@@ -418,22 +436,32 @@ def matches(text, value):
     return text == (value.decode() if isinstance(value, bytes) else str(value))
 
 
+def expect_columns(out, columns):
+    rows = list(csv.reader(io.StringIO(out)))
+    assert rows[0] == list(columns)
+    for name, texts, values in zip(columns, zip(*rows[1:]), columns.values()):
+        assert len(texts) == len(values)
+        for text, value in zip(texts, values):
+            assert matches(text, value), (name, text, value)
+
+
 def test_csv_holds_exactly_the_values_of_the_file(ricochet, folder, shipped):
     for path in shipped:
-        out = ricochet("show", path, "--csv", cwd=folder).expect_done().out
-        rows = list(csv.DictReader(io.StringIO(out)))
         with h5py.File(path) as file:
             columns = {name: file["sweep"][name][()] for name in file["sweep"]}
-            for name, data in per_task(file).items():
-                if data.dtype.kind == "c":
-                    columns |= {f"{name}.r": data[()].real, f"{name}.i": data[()].imag}
-                else:
-                    columns[name] = words_of(data) if h5py.check_enum_dtype(data.dtype) else data[()]
-        assert rows[0].keys() == columns.keys(), (path, rows[0].keys())
-        for name, values in columns.items():
-            assert len(values) == len(rows)
-            for row, value in zip(rows, values):
-                assert matches(row[name], value), (path.name, name, row[name], value)
+            for name, values in along(file, group_of(file), "task").items():
+                columns |= elements(name, values)
+        expect_columns(ricochet("show", path, "--csv", cwd=folder).expect_done().out, columns)
+
+
+def test_csv_along_a_second_axis_has_a_row_for_each_of_its_indices(ricochet, folder):
+    path = run(ricochet, folder, study(at_start="[15]", sweep=sweep(3, 0, 0.1)))
+    with h5py.File(path) as file:
+        columns = {"task": np.repeat(np.arange(3), 30), "particle": np.tile(np.arange(30), 3)}
+        columns["model.gamma"] = np.repeat(file["sweep/model.gamma"][()], 30)
+        columns |= {name: values.ravel() for name, values in along(file, "orbits", "particle", 1).items()}
+    assert {"q", "v"} <= columns.keys()
+    expect_columns(ricochet("show", path, "--csv=orbits/particle", cwd=folder).expect_done().out, columns)
 
 
 def test_csv_of_another_group_holds_its_columns(ricochet, folder):

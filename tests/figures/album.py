@@ -8,6 +8,7 @@ import matplotlib
 import numpy as np
 
 matplotlib.use("Agg")
+matplotlib.rcParams["figure.max_open_warning"] = 0  # an album keeps its pictures
 import matplotlib.pyplot as plt  # noqa: E402
 
 import ricochet  # noqa: E402

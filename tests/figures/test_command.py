@@ -211,7 +211,8 @@ def test_the_list_has_all_figures_and_their_kinds(plot):
     assert lines.keys() == CATALOGUE.keys()
     for name, spec in CATALOGUE.items():
         kinds = "all kinds" if set(spec.kinds) == set(KINDS) else ", ".join(spec.kinds)
-        assert lines[name] == f"{kinds}: {spec.shows}"
+        source = f" ({spec.source})" if spec.source else ""
+        assert lines[name] == f"{kinds}: {spec.shows}{source}"
 
 
 @pytest.mark.parametrize("name", ["family", "grazing"])
@@ -451,7 +452,7 @@ def test_the_help_has_every_option(capsys):
     assert ended.value.code == 0
     for spec in CATALOGUE.values():
         for option, text in spec.options.items():
-            assert arguments.flag_of(option) in said and text in said
+            assert arguments.flag(option) in said and text in said
 
 
 def test_the_command_starts_by_its_first_line(source):

@@ -32,4 +32,7 @@ int refuse(message *why, int code, const char *format, ...) __attribute__((forma
 /** EXIT_FILES with "PATH: cannot WHAT: REASON", the reason being that of errno. */
 int refuse_errno(const char *path, const char *what, message *why);
 
+/** Flushes standard output. @returns `code`, or EXIT_FILES when that is 0 and something could not be printed */
+int flush_output(int code, message *why);
+
 #endif

@@ -37,10 +37,9 @@ int complain(int code, const message *why) {
 }
 
 int finish_output(int code) {
-  if (fflush(stdout) == 0 && !ferror(stdout))
-    return code;
-  fputs("ricochet: cannot write to standard output\n", stderr);
-  return EXIT_FILES;
+  message why;
+  const int flushed = flush_output(code, &why);
+  return flushed == code ? code : complain(flushed, &why);
 }
 
 static int print_version(void) {

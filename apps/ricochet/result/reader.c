@@ -277,9 +277,13 @@ const char *reader_parameter(const reader_set *s) {
   return s->parameter[0] ? s->parameter : s->long_name;
 }
 
-void reader_row_axis(const reader_set *s, char *axis) {
-  snprintf(axis, sizeof s->axes, "%s", s->axes);
-  axis[strcspn(axis, " ")] = '\0';
+void reader_axis(const reader_set *s, int k, char *axis) {
+  const char *at = s->axes;
+  for (; k > 0 && *at; k--) {
+    at += strcspn(at, " ");
+    at += *at == ' ';
+  }
+  snprintf(axis, sizeof s->axes, "%.*s", (int)strcspn(at, " "), at);
 }
 
 bool reader_is_column(const reader_set *s, const char *axis) {
@@ -302,12 +306,28 @@ out:
   return hdf5_close(at, in_file, code);
 }
 
-int reader_rows(const file_place *at, const reader_set *s, uint64_t first, uint64_t count, unsigned char *values) {
-  return read_part(at, s, (hsize_t[]){first}, (hsize_t[]){count}, values);
+uint64_t reader_width(const reader_set *s, int axes) {
+  uint64_t width = 1;
+  for (int i = axes; i < s->rank; i++)
+    if (__builtin_mul_overflow(width, s->shape[i], &width))
+      return 0;
+  return width;
 }
 
-int reader_row(const file_place *at, const reader_set *s, uint64_t row, unsigned char *values) {
-  return read_part(at, s, (hsize_t[]){row, 0}, (hsize_t[]){1, s->shape[1]}, values);
+int reader_rows(const file_place *at, const reader_set *s, uint64_t first, uint64_t count, unsigned char *values) {
+  hsize_t from[READER_MAX_RANK] = {first}, counts[READER_MAX_RANK];
+  memcpy(counts, s->shape, sizeof counts);
+  counts[0] = count;
+  return read_part(at, s, from, counts, values);
+}
+
+int reader_part_of_row(const file_place *at, const reader_set *s, uint64_t row, uint64_t first, uint64_t count,
+                       unsigned char *values) {
+  hsize_t from[READER_MAX_RANK] = {row, first}, counts[READER_MAX_RANK];
+  memcpy(counts, s->shape, sizeof counts);
+  counts[0] = 1;
+  counts[1] = count;
+  return read_part(at, s, from, counts, values);
 }
 
 static void show_number(const unsigned char *value, int digits, char *text, size_t size) {
@@ -321,10 +341,6 @@ static void show_number(const unsigned char *value, int digits, char *text, size
 
 int reader_parts(const reader_set *s) {
   return s->type == READER_COMPLEX ? 2 : 1;
-}
-
-void reader_part_name(const reader_set *s, int part, char *text, size_t size) {
-  snprintf(text, size, "%s%s", s->name, reader_parts(s) == 1 ? "" : part == 0 ? ".r" : ".i");
 }
 
 void reader_part(const reader_set *s, const unsigned char *value, int part, int digits, char *text, size_t size) {

@@ -71,22 +71,24 @@ const char *reader_parameter(const reader_set *s);
 /** Whether the first axis of the set is `axis`, and its length is one value per row of it. */
 bool reader_is_column(const reader_set *s, const char *axis);
 
-/** Name of the set's first axis. @param axis  [256] */
-void reader_row_axis(const reader_set *s, char *axis);
+/** Name of axis number `k` of the set, "" where it has fewer. @param axis  [256] */
+void reader_axis(const reader_set *s, int k, char *axis);
 
-/** Reads rows [first, first + count) of a set with one value per row.
- *  @param values  [count][value_bytes] */
+/** Values behind each index of the first `axes` axes of a set: those of a row for 1; 0 if there are too many to count.
+ */
+uint64_t reader_width(const reader_set *s, int axes);
+
+/** Reads rows [first, first + count) of a set: all values of each.
+ *  @param values  [count][reader_width(s, 1)][value_bytes] */
 int reader_rows(const file_place *at, const reader_set *s, uint64_t first, uint64_t count, unsigned char *values);
 
-/** Reads one row of a set with two axes.
- *  @param values  [shape[1]][value_bytes] */
-int reader_row(const file_place *at, const reader_set *s, uint64_t row, unsigned char *values);
+/** Reads of one row of a set with two and more axes the indices [first, first + count) of its second axis.
+ *  @param values  [count][reader_width(s, 2)][value_bytes] */
+int reader_part_of_row(const file_place *at, const reader_set *s, uint64_t row, uint64_t first, uint64_t count,
+                       unsigned char *values);
 
 /** Numbers per value of the set: 2 of complex ones (real and imaginary part), else 1. */
 int reader_parts(const reader_set *s);
-
-/** Name of a part: that of the set, or "multiplier.r" and "multiplier.i". */
-void reader_part_name(const reader_set *s, int part, char *text, size_t size);
 
 /** A part of a value as text: numbers with `digits` significant digits, enums by name.
  *  @param text  [size], cut to fit */

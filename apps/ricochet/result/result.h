@@ -84,10 +84,14 @@ typedef int result_card(const file_place *at, reader_handle file);
  *  @param card_of  the card of a group, NULL for none */
 int result_show(const char *path, result_card *(*card_of)(const char *group), message *why);
 
-/** Prints a group as CSV (RFC 4180, numbers to 17 digits, enums by name, a row of names first): the swept parameters
- * and every column with one value per task. A group without a row per task comes with the rows of its first axis, and
- *  without the swept parameters; those of a ragged table (impact_row) begin with the task that they belong to.
- *  @param group  NULL for the first with a row per task; "GROUP/AXIS" for the columns along another axis
+/** Prints a table of a group as CSV (RFC 4180, numbers to 17 digits, enums by name, a row of names first): every data
+ * set whose first axis is that of the rows. Of one with more axes each element is a column: `q[3]`, `path[17][3]`. The
+ * swept parameters stand before the columns of a table with a row per task; rows of a ragged table (impact_row) begin
+ * with the task that they belong to. A group without a row per task comes with the rows of its first axis.
+ *
+ * "GROUP/AXIS" with the second axis of some data sets (trajectory/sample, orbits/particle) has a row for each of its
+ * indices: the indices of both axes, the swept parameters, and these data sets.
+ *  @param group  NULL for the first with a row per task; "GROUP/AXIS" for the rows of another axis
  *  @returns also EXIT_USAGE when there is no such group, or nothing in it to print */
 int result_show_csv(const char *path, const char *group, message *why);
 

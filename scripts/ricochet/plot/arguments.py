@@ -83,11 +83,12 @@ def _parser() -> argparse.ArgumentParser:
         )
     group = parser.add_argument_group("options of single figures")
     for name in sorted({name for spec in CATALOGUE.values() for name in spec.options}):
-        group.add_argument(flag_of(name), dest=name, default=argparse.SUPPRESS, **_argument(name))
+        group.add_argument(flag(name), dest=name, default=argparse.SUPPRESS, **_argument(name))
     return parser
 
 
-def flag_of(name: str) -> str:
+def flag(name: str) -> str:
+    """The flag of an option: --xlim."""
     return "--" + name.replace("_", "-")
 
 
@@ -98,24 +99,32 @@ def _argument(name: str) -> dict[str, Any]:
     for spec in takers:
         texts.setdefault(spec.options[name], []).append(spec.name)
     text = "; ".join(f"{what} ({', '.join(names)})" for what, names in texts.items())
-    return {"help": text.replace("%", "%%"), **_typed(takers[0].hints[name], name)}
+    return {"help": text.replace("%", "%%"), **_typed(takers[0].hints[name])}
 
 
-def _typed(hint: Any, name: str) -> dict[str, Any]:
+def _typed(hint: Any) -> dict[str, Any]:
     """bool: a flag; Sequence or tuple: several words; Literal: one of some words; otherwise one word."""
     if get_origin(hint) in (Union, types.UnionType):  # X | None
         hint = next(kind for kind in get_args(hint) if kind is not type(None))
-    metavar = name[0].upper()
     if hint is bool:
         return {"action": "store_true"}
     if get_origin(hint) is Literal:
         return {"choices": get_args(hint)}
-    types_of = {int: (_whole, "N"), float: (_number, "X"), str: (str, "WORD")}
     if get_origin(hint) is tuple:
-        return {"type": types_of[get_args(hint)[0]][0], "nargs": len(get_args(hint)), "metavar": metavar}
+        return {**_typed(get_args(hint)[0]), "nargs": len(get_args(hint))}
     if inspect.isclass(get_origin(hint)):
-        return {"type": types_of[get_args(hint)[0]][0], "nargs": "+", "metavar": metavar}
-    return dict(zip(("type", "metavar"), types_of[hint]))
+        return {**_typed(get_args(hint)[0]), "nargs": "+"}
+    one_word = {int: (_whole, "N"), float: (_number, "X"), str: (str, "WORD")}
+    return dict(zip(("type", "metavar"), one_word[hint]))
+
+
+def type_words(hint: Any) -> str:
+    """What stands behind the flag of an option of this type: "N", "N ...", "A|B", "" of a flag alone."""
+    typed = _typed(hint)
+    if "choices" in typed:
+        return "|".join(typed["choices"])
+    one = str(typed.get("metavar", ""))
+    return f"{one} ..." if typed.get("nargs") == "+" else " ".join([one] * typed.get("nargs", 1))
 
 
 def _number(word: str) -> float:

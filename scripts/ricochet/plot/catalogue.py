@@ -15,8 +15,9 @@ from typing import Any, get_type_hints
 from ricochet.plot.sheet import FigureError, settings
 from ricochet.result import Result
 
-# Which key of the study stores a column.
+# Which key of the study stores a column; by its whole name where another table has one of that name, too.
 _ASKED_BY = {
+    "branch/point/q": "branch.states",
     "q": "orbit.states",
     "v": "orbit.states",
     "multipliers": "orbit.multipliers",
@@ -27,7 +28,7 @@ _ASKED_BY = {
     "history_q": "branch.samples",
     "curve": "branch.trace",
     "values": "iterate.keep",
-    "states": "iterate.states",
+    "state": "iterate.states",
     "window": "iterate.windows",
     "window_period": "grazing.windows",
 }
@@ -46,6 +47,7 @@ class Spec:
     parts    of a result: the values of that option for which figures are drawn
     writes   suffixes of its files
     options  {keyword argument: what it says}
+    source   the figure of a source that it is: "[FN97] Figure 4"
     """
 
     name: str
@@ -60,6 +62,7 @@ class Spec:
     parts: Callable[[Result], Sequence[int]] = field(default=lambda result: ())
     writes: tuple[str, ...] = (".png", ".pdf", ".svg")
     options: Mapping[str, str] = field(default_factory=dict)
+    source: str = ""
 
     def missing(self, result: Result) -> str:
         """Why the figure cannot be drawn of a result; "" if it can."""
@@ -67,7 +70,7 @@ class Spec:
             return f"{self.name} is a figure of kind {' or '.join(self.kinds)}, this result is of kind {result.kind}"
         for name in self.columns:
             if not _has(result, name):
-                asked = _ASKED_BY.get(name.rpartition("/")[2])
+                asked = _ASKED_BY.get(name) or _ASKED_BY.get(name.rpartition("/")[2])
                 return f"it has no {name}" + (f" (the study did not ask for {asked})" if asked else "")
         if self.swept is not None and len(result.swept) != self.swept:
             held = f" ({', '.join(result.swept)})" if result.swept else ""

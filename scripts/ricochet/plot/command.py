@@ -15,7 +15,7 @@ import numpy as np
 from matplotlib.backend_bases import FigureCanvasBase
 
 from ricochet.file import ResultError
-from ricochet.plot.arguments import COMMON, Unusable, flag_of, near, options_of
+from ricochet.plot.arguments import COMMON, Unusable, flag, near, options_of
 from ricochet.plot.catalogue import CATALOGUE, KINDS, Spec, figures_of, in_order
 from ricochet.plot.sheet import FigureError, save, style
 from ricochet.result import Result
@@ -109,7 +109,7 @@ def _chosen(result: Result, name: str | None, given: dict[str, Any]) -> list[Spe
         return [_named(result, name.replace("_", "-"), given)]
     takers = [spec for spec in figures_of(result) if given.keys() <= spec.options.keys()]
     if not takers:
-        flags = " and ".join(flag_of(option) for option in given)
+        flags = " and ".join(flag(option) for option in given)
         raise Unusable(f"no figure of {result.path} takes {flags}; {_there_are(result)}")
     return [spec for spec in takers if spec.natural(result)] or takers
 
@@ -124,8 +124,8 @@ def _named(result: Result, name: str, given: dict[str, Any]) -> Spec:
     spec = CATALOGUE[name]
     for option in given:
         if option not in spec.options:
-            takes = ", ".join(flag_of(other) for other in spec.options) or "none"
-            raise Unusable(f"figure {name} has no option {flag_of(option)}; its options are: {takes}")
+            takes = ", ".join(flag(other) for other in spec.options) or "none"
+            raise Unusable(f"figure {name} has no option {flag(option)}; its options are: {takes}")
     return spec
 
 
@@ -196,7 +196,8 @@ def _print_list(specs: Sequence[Spec], natural: Sequence[Spec] | None = None, wi
     for spec in specs:
         kinds = f"{', '.join(spec.kinds) if len(spec.kinds) < len(KINDS) else 'all kinds'}: " if with_kinds else ""
         request = "" if natural is None or spec in natural else " (by its name only)"
-        _say(f"{spec.name:{width}}  {kinds}{spec.shows}{request}")
+        source = f" ({spec.source})" if spec.source else ""
+        _say(f"{spec.name:{width}}  {kinds}{spec.shows}{source}{request}")
 
 
 if __name__ == "__main__":

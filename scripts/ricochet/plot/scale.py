@@ -7,6 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.ticker import FormatStrFormatter, LogLocator, NullFormatter
 
+from ricochet.plot.words import number
 from ricochet.sweep import Array
 
 
@@ -86,7 +87,7 @@ def pad_limits(values: Array, part: float) -> tuple[float, float]:
 
 def clip_note(values: Array) -> str:
     low, high = np.nanmin(values) + 0.0, np.nanmax(values) + 0.0  # + 0.0 turns -0 into 0
-    return f"axis clipped, values from {low:.3g} to {high:.3g}"
+    return f"axis clipped, values from ${number(low, 3)}$ to ${number(high, 3)}$"
 
 
 def frame_parameter(axes: Axes, values: Array, part: float = 0.02) -> None:

@@ -34,6 +34,7 @@ _COLUMN_TEXT = 7.5  # points, of figures so narrow
 _TEXT = 10.0
 _MARGIN = 0.12  # inches, around headings and legends
 _LINE = 1.35  # height of a line of text over its size
+_HINTING = 0.99  # of the room for text: letters on pixels are wider than their outlines
 _SLENDER = 0.55  # power of its shrinking with which a figure loses height
 
 
@@ -143,7 +144,7 @@ class Sheet:
         varied  parameters besides the swept ones that the figure shows, and its heading does not
         words   what the heading says behind the system: the task, the verdict
         """
-        self._apply_limits()
+        self.apply_limits()
         top = self._place_heading(about, [*system(self.result, varied), *words])
         bottom = self._place_below()
         whole = self.height + top + bottom
@@ -160,15 +161,14 @@ class Sheet:
 
     # --- limits ---
 
-    def _apply_limits(self) -> None:
+    def apply_limits(self) -> None:
+        """Sets the limits of the style. `finish` does so; before it, a figure whose drawing depends on its limits."""
         now, main = _style.get(), self.panels[0]
         for axis, limits in (("x", now.xlim), ("y", now.ylim)):
             if limits is None:
                 continue
             if getattr(main, f"get_{axis}scale")() == "log" and min(limits) <= 0:
-                raise FigureError(
-                    self.result.path, f"limits {limits[0]:g} {limits[1]:g} of a logarithmic axis: both > 0"
-                )
+                raise FigureError(self.result.path, f"limits {limits[0]:g} {limits[1]:g} of a logarithmic axis: both > 0")
             getattr(main, f"set_{axis}lim")(*limits)
 
     # --- the heading ---
@@ -236,19 +236,22 @@ def words_of(text: str) -> list[str]:
 
 
 def wrapped(parts: Sequence[str], separator: str, room: float, font: dict[str, Any]) -> list[str]:
-    """Parts joined into lines that are at most `room` points wide."""
+    """Parts joined into lines that are at most `room` points wide. Widths of parts are added up, and lines measured only
+    when they are nearly full."""
     look_of = font["size"], font.get("weight", "normal")
     gap = text_width(f"x{separator}x", *look_of) - 2 * text_width("x", *look_of)
     lines: list[str] = []
     taken = 0.0
     for part in parts:
-        own = text_width(part, *look_of)
-        if lines and taken + gap + own <= room:
-            lines[-1] += separator + part
-            taken += gap + own
+        longer = f"{lines[-1]}{separator}{part}" if lines else part
+        taken += gap + text_width(part, *look_of)
+        if taken > 0.9 * room:
+            taken = text_width(longer, *look_of)
+        if lines and taken <= _HINTING * room:
+            lines[-1] = longer
         else:
             lines[-1:] = [lines[-1] + separator.rstrip(), part] if lines else [part]
-            taken = own
+            taken = text_width(part, *look_of)
     return [line for line in lines if line]
 
 

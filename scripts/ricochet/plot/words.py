@@ -14,7 +14,7 @@ from ricochet.sweep import Array
 _LABELS = {
     "model.gamma": r"coupling $\gamma$",
     "orbit.period": r"period $T$",
-    "orbit.energy": "energy",
+    "orbit.energy": "energy $E$",
     "model.hertz": r"stiffness $k$ of the Hertz contacts",
     "model.frequency": r"frequency $\omega$ of the force",
     "model.force": "amplitude of the force",
@@ -26,6 +26,7 @@ _LABELS = {
 _SYMBOLS = {
     "model.gamma": r"\gamma",
     "orbit.period": "T",
+    "orbit.energy": "E",
     "model.hertz": "k",
     "model.frequency": r"\omega",
     "model.lambda": r"\lambda",
@@ -109,7 +110,10 @@ def _element_label(result: Result, name: str) -> str:
     if path == "iterate.start" and item:
         return f"start $z_{{{int(index) + 1}}}$"
     if path in ("start.q", "start.v"):
-        return f"start ${path[-1]}_{{{index or 0}}}$"
+        whole = not item and result.parameters["model.particles"] > 1
+        return f"start ${path[-1]}$ of all particles" if whole else f"start ${path[-1]}_{{{index or 0}}}$"
+    if path in ("orbit.at_start", "orbit.at_half"):
+        return f"particle that hits at $t = {'0' if path.endswith('start') else 'T/2'}$"
     word = {"hertz": "Hertz stiffness"}.get(path.split(".")[-1], path.split(".")[-1].replace("_", " "))
     if path in ("model.cubic", "model.quadratic"):
         word += " term"
@@ -184,16 +188,14 @@ def _property(result: Result, name: str, varied: set[str]) -> str:
     if name == "model.frequency" and not _is_forced(result, varied):
         return ""
     items = np.atleast_1d(value)
-    others = [item for i, item in enumerate(items.tolist()) if f"{name}[{i}]" not in varied]
-    if not others or all(item == usual or item != item for item in others):
-        return ""
-    if len(others) < len(items):  # an element of it is swept
+    fixed = np.array([f"{name}[{i}]" not in varied for i in range(len(items))])
+    if all(item == usual or item != item for item in items[fixed].tolist()):
         return ""
     having = np.flatnonzero(~np.isnan(items))
-    if len(having) == 1 < len(items) and name in ("model.floor", "model.wall"):
+    if fixed.all() and len(having) == 1 < len(items) and name in ("model.floor", "model.wall"):
         words = words.replace(" at", f" of particle {having[0]} at")
-        items = items[having]
-    return words.format(_list_text(items))
+        items, fixed = items[having], fixed[having]
+    return words.format(_list_text(items, fixed))
 
 
 def _is_forced(result: Result, varied: set[str]) -> bool:
@@ -201,8 +203,10 @@ def _is_forced(result: Result, varied: set[str]) -> bool:
     return bool((amplitude != 0).any()) or any(name.startswith("model.force") for name in varied)
 
 
-def _list_text(items: Array) -> str:
-    texts = [r"\mathrm{none}" if np.isnan(item) else number(float(item)) for item in items]
+def _list_text(items: Array, fixed: Array) -> str:
+    """The items of a list; dots for those that are swept."""
+    texts = [r"\mathrm{none}" if np.isnan(item) else number(float(item), 6) for item in items]
+    texts = [text if is_fixed else r"\cdot" for text, is_fixed in zip(texts, fixed)]
     if len(set(texts)) == 1:
         return texts[0]
     if len(texts) > _MOST_ITEMS:

@@ -91,7 +91,7 @@ static int read_vector(const stored_file *f, const char *name, uint64_t row, dou
   *values = calloc(s->shape[1], sizeof **values);
   if (!*values)
     return refuse(f->at.why, EXIT_RUN, "%s: no memory for a state", f->at.path);
-  return reader_row(&f->at, s, row, (unsigned char *)*values);
+  return reader_rows(&f->at, s, row, 1, (unsigned char *)*values);
 }
 
 static int read_point(const stored_file *f, uint64_t row, stored_motion *m) {

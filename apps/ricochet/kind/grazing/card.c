@@ -62,7 +62,7 @@ static unsigned char *row_of(card *k, const char *name, reader_type type, const 
   if (!values)
     k->code = refuse(k->at->why, EXIT_RUN, "%s: out of memory", k->at->path);
   else
-    k->code = reader_row(k->at, s, k->task, values);
+    k->code = reader_rows(k->at, s, k->task, 1, values);
   *count = k->code ? 0 : (size_t)s->shape[1];
   return values;
 }

@@ -16,8 +16,8 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, NullFormatter
 
 from ricochet.plot import look, scale
+from ricochet.plot.branches.closed_form import grazing_form
 from ricochet.plot.catalogue import figure
-from ricochet.plot.grazings.closed_form import grazing_form
 from ricochet.plot.grazings.points import (
     CONTINUOUS,
     DISCONTINUOUS,
