@@ -243,6 +243,7 @@ def fitted_legend(figure: Figure, entries: Sequence[Artist], room: float) -> tup
         (k for k in range(min(len(entries), 6), 1, -1) if _columns_width(widths, k, size) <= 72 * room), 1
     )
     rows = -(-len(entries) // columns)
+    columns = -(-len(entries) // rows)  # no more than these rows need: columns of about equal length
     legend = figure.legend(
         handles=list(entries), loc="lower left", ncol=columns, borderaxespad=0, borderpad=0, labelspacing=0.45
     )  # fmt: skip

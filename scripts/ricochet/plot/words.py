@@ -126,7 +126,7 @@ def parameter_symbol(result: Result, name: str) -> str:
 
 def assignment(result: Result, name: str, value: float, digits: int = 6) -> str:
     """ "gamma = 0.1" in mathematical letters."""
-    return f"{parameter_symbol(result, name)} $= {number(value, digits)}$"
+    return f"{parameter_symbol(result, name)} $= {number(value, digits)}$".replace("$ $", " ")  # one formula, not two
 
 
 def task_words(result: Result, task: int) -> list[str]:
