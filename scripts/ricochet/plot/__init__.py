@@ -13,13 +13,24 @@
 from ricochet.plot.catalogue import CATALOGUE, Spec, figures_of
 from ricochet.plot.orbits.modes import modes
 from ricochet.plot.sheet import FigureError, save, style
+from ricochet.plot.trajectories.animation import animation
+from ricochet.plot.trajectories.lyapunov import lyapunov, lyapunov_history
+from ricochet.plot.trajectories.phase import phase
+from ricochet.plot.trajectories.spacetime import spacetime
+from ricochet.plot.trajectories.trajectory import trajectory
 
 __all__ = [
     "CATALOGUE",
     "FigureError",
     "Spec",
+    "animation",
     "figures_of",
+    "lyapunov",
+    "lyapunov_history",
     "modes",
+    "phase",
     "save",
+    "spacetime",
     "style",
+    "trajectory",
 ]
