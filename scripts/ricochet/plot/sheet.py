@@ -6,6 +6,7 @@ Text is measured before it is placed: headings are wrapped, and a legend has as 
 from __future__ import annotations
 
 import contextlib
+import functools
 import os
 import re
 from collections.abc import Iterator, Sequence
@@ -15,10 +16,12 @@ from typing import Any
 
 import matplotlib as mpl
 import matplotlib.pyplot as plt
+import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.font_manager import FontProperties
+from matplotlib.path import Path
 from matplotlib.textpath import TextPath
 
 from ricochet.file import ResultError
@@ -210,12 +213,14 @@ class Sheet:
 # --- measured text ---
 
 
+@functools.lru_cache(maxsize=4096)
 def text_width(text: str, size: float, weight: str = "normal") -> float:
-    """The width of one line in points, without a renderer."""
+    """The width of one line in points, without a renderer: that of the control points, not of the curves between them."""
     if not text:
         return 0.0
     path = TextPath((0, 0), text, size=size, prop=FontProperties(weight=weight))
-    return float(path.get_extents().width) if len(path.vertices) else 0.0
+    across = path.vertices[path.codes != Path.CLOSEPOLY, 0] if len(path.vertices) else []
+    return float(np.ptp(across)) if len(across) else 0.0
 
 
 def plain(text: str) -> str:
