@@ -6,7 +6,6 @@ import pytest
 
 # What the help says, besides --output.
 HELP = {
-    "animate_trajectory.py": ["/trajectory/q", "--task", "--from"],
     "plot_approach.py": ["/orbits/outcome"],
     "plot_attractor.py": ["/diagram/outcome"],
     "plot_basin.py": ["/basin/outcome"],
@@ -18,19 +17,15 @@ HELP = {
     "plot_grazing_curve.py": ["/grazing/outcome"],
     "plot_grazing_windows.py": ["/grazing/verdict"],
     "plot_laws.py": ["/branch/point_parameter"],
-    "plot_lyapunov.py": ["/trajectory/outcome"],
     "plot_manifold.py": ["/branch/point_history_q"],
     "plot_map.py": ["/orbits/outcome"],
     "plot_modes.py": ["/orbits/outcome"],
     "plot_motions.py": ["/branch/point_history_q"],
     "plot_multipliers.py": ["/orbits/outcome"],
     "plot_periods.py": ["/diagram/outcome"],
-    "plot_phase.py": ["/trajectory/q", "--task", "--from"],
     "plot_ritz.py": ["/orbits/ritz_functions"],
-    "plot_spacetime.py": ["/trajectory/q", "--task", "--from"],
     "plot_stability.py": ["/orbits/outcome"],
     "plot_sweep.py": ["/orbits/outcome"],
-    "plot_trajectory.py": ["/trajectory/q", "--task", "--from"],
     "plot_windows.py": ["/window/task"],
 }
 

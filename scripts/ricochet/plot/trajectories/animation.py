@@ -99,7 +99,7 @@ class _Stage:
         self._left, self._right = _anchors(motion)
         self._ring = motion.parameters.get("model.ends") == "periodic" and self.count > 2
         axes.set(xlabel="particle", ylabel=LABEL)
-        axes.xaxis.set_major_locator(MaxNLocator(integer=True, nbins=12))
+        axes.xaxis.set_major_locator(MaxNLocator(integer=True, nbins=12, min_n_ticks=1))
         self._draw_obstacles(motion)
         self._make_movers(motion)
         self._find_flashes(motion)

@@ -58,7 +58,9 @@ class Film:
 
     def _write_mp4(self, path: str) -> None:
         if not animation.FFMpegWriter.isAvailable():
-            raise FigureError(self.source, f"{path} needs the program ffmpeg, which is not there; a .gif does without it")
+            raise FigureError(
+                self.source, f"{path} needs the program ffmpeg, which is not there; a .gif does without it"
+            )
         try:
             self.animation.save(path, writer=animation.FFMpegWriter(fps=self.fps), dpi=self.dpi)
         except subprocess.CalledProcessError as trouble:

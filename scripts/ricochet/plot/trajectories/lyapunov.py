@@ -131,7 +131,9 @@ def _mark_lost(axes: Axes, values: Array, at: Array) -> list[Artist]:
     lost = np.isneginf(values)
     low, high = axes.get_ylim()
     for column, colour in zip(lost.T, _colours(values.shape[1])):
-        axes.plot(at[column], np.full(column.sum(), low + 0.025 * (high - low)), "v", color=colour, markersize=5, zorder=4)
+        axes.plot(
+            at[column], np.full(column.sum(), low + 0.025 * (high - low)), "v", color=colour, markersize=5, zorder=4
+        )
     return [_marker("v", r"$-\infty$: direction lost when a contact sticks")] if lost.any() else []
 
 

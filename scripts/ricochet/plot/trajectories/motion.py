@@ -112,9 +112,7 @@ class Motion:
     @cached_property
     def hits(self) -> Hits:
         parts = (self.impacts, self.contacts)
-        time, particle, side = (
-            np.concatenate([part[name] for part in parts]) for name in ("time", "particle", "side")
-        )
+        time, particle, side = (np.concatenate([part[name] for part in parts]) for name in ("time", "particle", "side"))
         return Hits(time, particle, side).where(np.argsort(time, kind="stable"))
 
     @property
@@ -129,7 +127,7 @@ class Motion:
         return found
 
     def in_sight(self, low: float, high: float) -> dict[str, Array]:
-        """Obstacles that are hit, or near the displacements from `low` to `high`, NaN for others: {side: [particles]}."""
+        """Obstacles that are hit, or near displacements from `low` to `high`: {side: [particles]}, NaN for others."""
         reach = _REACH * (high - low)
         found = {}
         for side, places in self.obstacles.items():

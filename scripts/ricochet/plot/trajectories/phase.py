@@ -76,7 +76,9 @@ def _checked(motion: Motion, particles: Sequence[int]) -> list[int]:
             reason = f"it has no particle {particle}, only particles 0 to {motion.particles - 1}"
             raise FigureError(motion.result.path, reason)
     if len(chosen) > _MOST_PANELS:
-        raise FigureError(motion.result.path, f"{len(chosen)} particles for one figure, expected at most {_MOST_PANELS}")
+        raise FigureError(
+            motion.result.path, f"{len(chosen)} particles for one figure, expected at most {_MOST_PANELS}"
+        )
     return chosen
 
 
@@ -165,15 +167,15 @@ def _draw_curve(axes: Axes, portrait: Portrait, norm: Normalize) -> LineCollecti
     )  # fmt: skip
     lines.set_array(np.concatenate(times))
     axes.add_collection(lines)
-    axes.plot(portrait.q[0], portrait.v[0], "s", color=lines.cmap(norm(portrait.t[0])), markersize=4.5 * pen(), zorder=2.5)
+    axes.plot(
+        portrait.q[0], portrait.v[0], "s", color=lines.cmap(norm(portrait.t[0])), markersize=4.5 * pen(), zorder=2.5
+    )
     return lines
 
 
 def _frame(axes: Axes, motion: Motion, particle: int, portrait: Portrait) -> None:
     """Room around the curve, and the particle's own obstacles, hatched."""
-    places = {
-        side: found[particle] for side, found in motion.in_sight(portrait.q.min(), portrait.q.max()).items()
-    }
+    places = {side: found[particle] for side, found in motion.in_sight(portrait.q.min(), portrait.q.max()).items()}
     across = np.concatenate([portrait.q, portrait.at, [place for place in places.values() if np.isfinite(place)]])
     upwards = np.concatenate([portrait.v, portrait.before, portrait.after])
     for values, set_limits in ((across, axes.set_xlim), (upwards, axes.set_ylim)):
@@ -190,12 +192,16 @@ def _draw_jumps(axes: Axes, portrait: Portrait) -> None:
     """Dashed lines at the obstacles, and the states before and after the impacts."""
     for place in np.unique(portrait.at):
         ends = np.concatenate([portrait.before[portrait.at == place], portrait.after[portrait.at == place]])
-        axes.plot([place, place], [ends.min(), ends.max()], color=look.INK, linewidth=1.1 * pen(), linestyle=_DASHES, zorder=3)
+        axes.plot(
+            [place, place], [ends.min(), ends.max()], color=look.INK, linewidth=1.1 * pen(), linestyle=_DASHES, zorder=3
+        )
     if len(portrait.at) == 0:
         return
     shown = np.unique(np.linspace(0, len(portrait.at) - 1, min(len(portrait.at), _MOST_MARKS)).round().astype(int))
     for speeds, face in ((portrait.before, "white"), (portrait.after, look.INK)):
-        axes.scatter(portrait.at[shown], speeds[shown], s=15 * pen() ** 2, c=face, edgecolors=look.INK, linewidths=0.8, zorder=4)
+        axes.scatter(
+            portrait.at[shown], speeds[shown], s=15 * pen() ** 2, c=face, edgecolors=look.INK, linewidths=0.8, zorder=4
+        )
 
 
 def _entries(motion: Motion, chosen: Sequence[int]) -> list[Artist]:

@@ -17,6 +17,7 @@ from ricochet.plot import look
 from ricochet.plot.catalogue import figure
 from ricochet.plot.sheet import FigureError, Sheet
 from ricochet.plot.trajectories.motion import LABEL, OPTIONS, Hits, Motion, is_sampled, pen, picked_tasks
+from ricochet.plot.words import number
 from ricochet.result import Result
 from ricochet.sweep import Array
 
@@ -65,12 +66,12 @@ def spacetime(
     ends = limit or _usual_limit(q)
     picture = _draw_picture(axes, motion, q, first, FuncNorm(_ROOT, -ends, ends) if root else Normalize(-ends, ends))
     axes.set(xlabel="time $t$", ylabel="particle", xlim=motion.limits, ylim=(first - 0.5, last + 0.5))
-    axes.yaxis.set_major_locator(MaxNLocator(integer=True, nbins=10))
+    axes.yaxis.set_major_locator(MaxNLocator(integer=True, nbins=10, min_n_ticks=1))
     largest = float(np.abs(q).max())
     extend = "both" if largest > ends else "neither"
     sheet.figure.colorbar(picture, ax=axes, label=LABEL, extend=extend, aspect=34, pad=0.015)
     if largest > ends:
-        sheet.note(f"colours end at {ends:.3g}, displacements at {largest:.3g}")
+        sheet.note(f"colours end at ${number(ends, 3)}$, displacements at ${number(largest, 3)}$")
     sheet.legend(_mark_hits(sheet, axes, motion, first, last))
     for note in motion.notes():
         sheet.note(note)
@@ -82,7 +83,8 @@ def _checked_range(motion: Motion, particles: Sequence[int] | None) -> tuple[int
     if not 0 <= first <= last < motion.particles or len(particles or (0, 0)) > 2:
         given = " ".join(map(str, particles or ()))
         raise FigureError(
-            motion.result.path, f"particles {given}, expected the first and the last one, of 0 to {motion.particles - 1}"
+            motion.result.path,
+            f"particles {given}, expected the first and the last one, of 0 to {motion.particles - 1}",
         )
     return first, last
 

@@ -145,7 +145,9 @@ def _draw_obstacles(sheet: Sheet, axes: Axes, obstacles: dict[str, Array], looks
     for side, places in obstacles.items():
         different = np.unique(places[np.isfinite(places)])
         if len(different) == 1 and np.isfinite(places).all():
-            axes.axhspan(different[0], different[0] - UPWARDS[side] * _BEYOND * (high - low), zorder=0.5, **look.OBSTACLE)
+            axes.axhspan(
+                different[0], different[0] - UPWARDS[side] * _BEYOND * (high - low), zorder=0.5, **look.OBSTACLE
+            )
             axes.axhline(different[0], color=look.INK, linewidth=1.1, zorder=1.5)
         else:
             lines += [(side, place, np.flatnonzero(places == place)) for place in different]
@@ -172,7 +174,8 @@ def _draw_lines(axes: Axes, lines: list[tuple[str, float, Array]], looks: Looks)
         sides.setdefault(kind, set()).add(side)
     style = {"linewidth": 0.9, "linestyle": _DASHES}
     return [
-        Line2D([], [], color=colour, label=f"{_plural(found)} {whose}", **style) for (colour, whose), found in sides.items()
+        Line2D([], [], color=colour, label=f"{_plural(found)} {whose}", **style)
+        for (colour, whose), found in sides.items()
     ]
 
 
