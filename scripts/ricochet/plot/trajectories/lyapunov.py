@@ -127,13 +127,14 @@ def _frame(result: Result, axes: Axes, values: Array) -> None:
 
 
 def _mark_lost(axes: Axes, values: Array, at: Array) -> list[Artist]:
-    """Exponents of minus infinity at the lower edge."""
+    """Exponents of minus infinity at the lower edge, later ones as smaller triangles in those before them."""
     lost = np.isneginf(values)
     low, high = axes.get_ylim()
-    for column, colour in zip(lost.T, _colours(values.shape[1])):
-        axes.plot(
-            at[column], np.full(column.sum(), low + 0.025 * (high - low)), "v", color=colour, markersize=5, zorder=4
-        )
+    sizes = np.linspace(9, 4, max(int(lost.any(axis=0).sum()), 2))
+    for column, size in zip(np.flatnonzero(lost.any(axis=0)), sizes):
+        where = at[lost[:, column]]
+        height = np.full(len(where), low + 0.03 * (high - low))
+        axes.plot(where, height, "v", color=_colours(values.shape[1])[column], markersize=size, zorder=4)
     return [_marker("v", r"$-\infty$: direction lost when a contact sticks")] if lost.any() else []
 
 

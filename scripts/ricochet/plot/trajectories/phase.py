@@ -147,7 +147,7 @@ def _draw_panel(axes: Axes, motion: Motion, particle: int, norm: Normalize) -> L
     lines = _draw_curve(axes, portrait, norm)
     _frame(axes, motion, particle, portrait)
     axes.axhline(0, color="#dddddd", linewidth=0.7, zorder=1)
-    axes.locator_params(axis="x", nbins=5)
+    axes.locator_params(axis="x", nbins=3 if is_narrow() else 5)
     _draw_jumps(axes, portrait)
     axes.set_title(f"particle {particle}: {motion.count_of_hits(particle)}", loc="left", pad=4)
     return lines
