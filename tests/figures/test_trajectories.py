@@ -91,30 +91,31 @@ def without_exponents(file):
 MADE = {"grazed": altered("exponents", without_exponents)}
 
 # figure, result, options
+COLUMN = {"style": {"column": True}}
 PICTURES = [
-    (figure, name, options)
-    for figure in ("trajectory", "spacetime", "phase")
-    for name, options in (
-        ("orbit", {}),
-        ("crowd", {}),
-        ("ledges", {"style": {"column": True}}),
-        ("three", {"task": 1, "start": 2.5, "end": 20.0}),
-        ("contacts", {"style": {"column": True}}),
-        ("stopped", {"style": {"title": ""}}),
-    )
-] + [
-    ("trajectory", "quiet", {"style": {"column": True}}),
+    ("trajectory", "orbit", {}),
+    ("trajectory", "crowd", {}),
+    ("trajectory", "ledges", COLUMN),
+    ("trajectory", "three", {"task": 1, "start": 2.5, "end": 20.0}),
+    ("trajectory", "stopped", {"style": {"title": ""}}),
+    ("trajectory", "quiet", COLUMN),
+    ("spacetime", "orbit", COLUMN),
     ("spacetime", "crowd", {"root": True, "particles": [5, 9]}),
     ("spacetime", "crowd", {"limit": 0.2}),
-    ("phase", "crowd", {"particles": list(range(8))}),
-    ("phase", "masses", {"style": {"column": True}}),
+    ("spacetime", "contacts", {"end": 20.0}),
+    ("phase", "orbit", {}),
+    ("phase", "crowd", {}),
+    ("phase", "ledges", COLUMN),
+    ("phase", "contacts", COLUMN),
+    ("phase", "stopped", {"task": 2}),
+    ("phase", "bouncing", {"style": {"title": ""}}),
     ("lyapunov", "exponents", {}),
-    ("lyapunov", "grazed", {"style": {"column": True}}),
+    ("lyapunov", "grazed", COLUMN),
     ("lyapunov", "many_exponents", {}),
-    ("lyapunov", "resting", {"style": {"column": True}}),
+    ("lyapunov", "resting", COLUMN),
     ("lyapunov-history", "many_exponents", {"task": 1, "style": {"column": True}}),
     ("animation", "bouncing", {}),
-    ("animation", "ledges", {"style": {"column": True}}),
+    ("animation", "ledges", COLUMN),
 ]
 # figure, result, options, words of the message
 REFUSALS = [
