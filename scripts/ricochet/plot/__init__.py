@@ -16,12 +16,6 @@ from ricochet.plot.branches.frequency_energy import frequency_energy
 from ricochet.plot.branches.laws import laws
 from ricochet.plot.branches.manifold import manifold
 from ricochet.plot.branches.motions import motions
-from ricochet.plot.branches.branch import branch
-from ricochet.plot.branches.curves import curves
-from ricochet.plot.branches.frequency_energy import frequency_energy
-from ricochet.plot.branches.laws import laws
-from ricochet.plot.branches.manifold import manifold
-from ricochet.plot.branches.motions import motions
 from ricochet.plot.catalogue import CATALOGUE, Spec, figures_of
 from ricochet.plot.diagrams.attractor import attractor
 from ricochet.plot.diagrams.basin import basin
@@ -36,11 +30,17 @@ from ricochet.plot.orbits.ritz import ritz
 from ricochet.plot.orbits.stability import stability
 from ricochet.plot.orbits.sweep import sweep
 from ricochet.plot.sheet import FigureError, save, style
+from ricochet.plot.trajectories.animation import animation
+from ricochet.plot.trajectories.lyapunov import lyapunov, lyapunov_history
+from ricochet.plot.trajectories.phase import phase
+from ricochet.plot.trajectories.spacetime import spacetime
+from ricochet.plot.trajectories.trajectory import trajectory
 
 __all__ = [
     "CATALOGUE",
     "FigureError",
     "Spec",
+    "animation",
     "approach",
     "attractor",
     "basin",
@@ -50,18 +50,23 @@ __all__ = [
     "figures_of",
     "frequency_energy",
     "laws",
+    "lyapunov",
+    "lyapunov_history",
     "manifold",
     "map",
     "modes",
     "motions",
     "multipliers",
     "periods",
+    "phase",
     "ritz",
     "save",
     "scaled",
+    "spacetime",
     "stability",
     "style",
     "sweep",
+    "trajectory",
     "window_table",
     "windows",
 ]
