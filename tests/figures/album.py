@@ -26,7 +26,8 @@ class Album:
         key = (figure, name, repr(style), repr(sorted(options.items())))
         if key not in self._drawn:
             with ricochet.open(self.shelf[name]) as result, ricochet.plot.style(**(style or {})):
-                self._drawn[key] = Picture(ricochet.plot.CATALOGUE[figure].draw(result, **options))
+                drawn = ricochet.plot.CATALOGUE[figure].draw(result, **options)
+                self._drawn[key] = Picture(getattr(drawn, "figure", drawn))  # a film has a figure
         return self._drawn[key]
 
     def close(self):

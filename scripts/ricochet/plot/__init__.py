@@ -34,11 +34,17 @@ from ricochet.plot.orbits.ritz import ritz
 from ricochet.plot.orbits.stability import stability
 from ricochet.plot.orbits.sweep import sweep
 from ricochet.plot.sheet import FigureError, save, style
+from ricochet.plot.trajectories.animation import animation
+from ricochet.plot.trajectories.lyapunov import lyapunov, lyapunov_history
+from ricochet.plot.trajectories.phase import phase
+from ricochet.plot.trajectories.spacetime import spacetime
+from ricochet.plot.trajectories.trajectory import trajectory
 
 __all__ = [
     "CATALOGUE",
     "FigureError",
     "Spec",
+    "animation",
     "approach",
     "attractor",
     "basin",
@@ -52,18 +58,23 @@ __all__ = [
     "grazing_curve",
     "grazing_windows",
     "laws",
+    "lyapunov",
+    "lyapunov_history",
     "manifold",
     "map",
     "modes",
     "motions",
     "multipliers",
     "periods",
+    "phase",
     "ritz",
     "save",
     "scaled",
+    "spacetime",
     "stability",
     "style",
     "sweep",
+    "trajectory",
     "window_table",
     "windows",
 ]

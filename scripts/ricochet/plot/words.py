@@ -211,7 +211,7 @@ def _list_text(items: Array, fixed: Array) -> str:
         return texts[0]
     if len(texts) > _MOST_ITEMS:
         texts = [*texts[: _MOST_ITEMS - 2], r"\ldots", texts[-1]]
-    return ",\\, ".join(texts)
+    return ",\\, ".join("{" + text + "}" if text.startswith("-") else text for text in texts)  # {}: no room after -
 
 
 # --- obstacles ---
