@@ -162,7 +162,7 @@ REFUSALS = [
     ("attractor", "impacts", {}, "8 tasks in it: say which, --task 0 to 7"),
     ("attractor", "attractor", {"task": 1}, "it has no task 1, only tasks 0 to 0"),
     ("attractor", "attractor", {"x": "z1", "y": "z4"}, "no number z4, it has z1, z2, z3"),
-    ("periods", "plain", {}, "1 swept parameters (model.d), this figure needs 2"),
+    ("periods", "plain", {}, "1 swept parameter (model.d), this figure needs 2"),
     ("basin", "plain", {}, "of kind basin"),
     ("basin", "basin_line", {}, "this figure needs 2"),
     ("windows", "grid", {}, "it has no window (the study did not ask for iterate.windows)"),

@@ -13,6 +13,7 @@ from dataclasses import dataclass, field
 from typing import Any, get_type_hints
 
 from ricochet.plot.sheet import FigureError, settings
+from ricochet.plot.words import count
 from ricochet.result import Result
 
 # Which key of the study stores a column; by its whole name where another table has one of that name, too.
@@ -74,7 +75,7 @@ class Spec:
                 return f"it has no {name}" + (f" (the study did not ask for {asked})" if asked else "")
         if self.swept is not None and len(result.swept) != self.swept:
             held = f" ({', '.join(result.swept)})" if result.swept else ""
-            return f"{len(result.swept)} swept parameters{held}, this figure needs {self.swept}"
+            return f"{count(len(result.swept), 'swept parameter')}{held}, this figure needs {self.swept}"
         return self.reason(result)
 
     @property
