@@ -1,4 +1,4 @@
-"""The scripts of docs/python.md run as they stand there."""
+"""The scripts of docs/python.md run as they stand there; docs/figures.md is what the package prints of its figures."""
 
 import os
 import re
@@ -58,3 +58,25 @@ def test_the_script_over_tasks_prints_a_branch(ricochet, page, source, folder):
     lines = python(blocks(page, "python")[1], source, folder).splitlines()
     assert len(lines[0].split()) == 2 and float(lines[0].split()[0]) > 0
     assert "[" in lines[1]
+
+
+# The figures of the sources that computed numbers can draw, and their names here.
+OF_SOURCES = {
+    "Example 1 of [JAP]": "modes",
+    "[VID] Figure 2, left": "frequency-energy",
+    "[VID] Figure 2, right": "manifold",
+    "[FN97] Figure 3": "criterion",
+    "[FN97] Figure 4": "diagram",
+    "[FN97] Figure 5": "scaled",
+    "[FN97] Figure 6": "attractor",
+}
+
+
+def test_the_page_of_figures_is_up_to_date(source, folder):
+    printed = python("from ricochet.plot.reference import page; print(page(), end='')", source, folder)
+    assert (source / "docs" / "figures.md").read_text() == printed, "python3 -m ricochet.plot.reference > docs/figures.md"
+
+
+def test_every_figure_of_the_sources_has_a_name(source, folder):
+    code = "import ricochet.plot; print(*(f'{s.source}={s.name}' for s in ricochet.plot.CATALOGUE.values() if s.source), sep=';')"
+    assert dict(item.split("=") for item in python(code, source, folder).strip().split(";")) == OF_SOURCES

@@ -37,6 +37,7 @@ _FEWEST, _MOST = 13, 40  # coefficients
     shows="the criterion of a grazing bifurcation: states after an impact, and the coefficients that decide",
     columns=("grazing/L", "grazing/xi", "grazing/eta", "grazing/coefficient"),
     reason=why_none,
+    source="[FN97] Figure 3",
     part="task",
     parts=grazing_tasks,
     options={"task": "the task whose grazing point is drawn"},
