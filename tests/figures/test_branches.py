@@ -306,7 +306,7 @@ def test_frequency_energy_plot_goes_through_all_motions(picture, results):
 
 
 def test_values_of_a_sweep_differ_in_colour_and_have_the_words_of_all_figures(picture):
-    words = [f"cubic term of spring 1 $= {value}$" for value in ("0", "0.1", "0.2")]
+    words = [f"cubic term of spring 1 = ${value}$" for value in ("0", "0.1", "0.2")]
     for figure in ("frequency-energy", "branch"):
         drawn = picture(figure, "modes")
         assert [label for label in drawn.legend if "cubic" in label] == words

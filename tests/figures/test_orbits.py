@@ -506,7 +506,7 @@ def test_ritz_has_the_errors_of_the_result(picture, results):
         assert (np.concatenate(lines) == np.column_stack([functions, column(path, f"orbits/{name}")])).all()
     title, system = drawn.heading
     assert title == "Ritz" and system.startswith("2 masses in series, stiffness") and system.endswith("$T = 6.8$")
-    assert drawn.legend == ["cubic term of spring 1 $= 0$", "cubic term of spring 1 $= 0.1$"] and drawn.notes == ""
+    assert drawn.legend == ["cubic term of spring 1 = $0$", "cubic term of spring 1 = $0.1$"] and drawn.notes == ""
 
 
 def test_ritz_compares_with_a_result_without_constants(picture, results):

@@ -342,7 +342,7 @@ def test_convergence_of_exponents_is_that_of_the_task(picture, results):
     for k in range(2):
         assert (lines[k] == np.column_stack([time, history[:, k]])).all()
     assert (history[-1] == column(path, "trajectory/lyapunov")[5]).all() and len(history) > 5
-    assert drawn.heading[1].endswith("$= 12$, task 5")
+    assert drawn.heading[1].endswith("= $12$, task 5")
 
 
 def test_gaps_of_exponents_are_explained(picture):

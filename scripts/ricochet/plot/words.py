@@ -130,7 +130,13 @@ def parameter_symbol(result: Result, name: str) -> str:
 
 def assignment(result: Result, name: str, value: float, digits: int = 6) -> str:
     """ "gamma = 0.1" in mathematical letters."""
-    return f"{parameter_symbol(result, name)} $= {number(value, digits)}$".replace("$ $", " ")  # one formula, not two
+    return equation(parameter_symbol(result, name), number(value, digits))
+
+
+def equation(symbol: str, value: str) -> str:
+    """A symbol or words, and a value in mathematical text without dollars. Behind words the equals sign is a letter:
+    a formula that began with it would have no room behind it."""
+    return f"{symbol[:-1]} = {value}$" if symbol.endswith("$") else f"{symbol} = ${value}$"
 
 
 def task_words(result: Result, task: int) -> list[str]:
