@@ -121,9 +121,11 @@ def _draw_bar(sheet: Sheet, norm: Normalize) -> Axes:
 
 def _fit(drawn: Figure, axes: Any, bar: Axes) -> None:
     """Zooms so that the labels of all axes lie inside the figure and beside the bar: matplotlib's layout does not know
-    labels in space."""
+    labels in space. It is made once, since it would move the axes after they were measured."""
     left, bottom, width, height = drawn.get_layout_engine().get()["rect"]
     room = Bbox.from_bounds(left, bottom, width, height).transformed(drawn.transFigure)
+    drawn.draw_without_rendering()
+    drawn.set_layout_engine("none")
     for zoom in _ZOOMS:
         axes.set_box_aspect(None, zoom=zoom)
         drawn.draw_without_rendering()

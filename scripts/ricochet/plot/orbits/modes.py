@@ -59,7 +59,7 @@ def modes(result: Result, *, all: bool = False, curves: int = 60) -> Figure:
     upper.tick_params(labelbottom=False)
     panels[1].axhline(0, color=look.FAINT, linewidth=0.6, zorder=1)
     panels[1].set_xlabel("particle")
-    panels[1].xaxis.set_major_locator(MaxNLocator(integer=True, nbins=12))
+    panels[1].xaxis.set_major_locator(MaxNLocator(integer=True, nbins=12, min_n_ticks=1))
     sheet.figure.colorbar(lines, ax=panels, label=parameter_label(result, name), aspect=40, pad=0.015)
     _note_rest(sheet, len(rows), usable.sum(), left_out, missing)
     return sheet.finish()
