@@ -26,6 +26,13 @@ branch: {{parameter: model.gamma, from: 0, to: {to}, states: true}}
 STUDIES = {
     "family": FAMILY,
     "forced": FORCED,
+    "returning": """kind: branch
+title: a Duffing oscillator beside a wall, through resonance
+model: {type: duffing_chain, particles: 1, mass: 1, stiffness: 1, cubic: 0.5, damping: 0.1, wall: 1, restitution: 0.8,
+        force: 0.3, frequency: 0.6}
+orbit: {motion: forced}
+branch: {parameter: model.frequency, from: 0.6, to: 2.5, cross: true, segments: 8}
+""",
     "driven": FORCED.replace("cross: true", "cross: true, samples: 33"),
     "rigid": RING.format(title="under the impact law", hertz="", to=0.19),
     "soft": RING.format(title="under Hertz's law", hertz=", hertz: 100", to=0.15),
@@ -219,6 +226,14 @@ def test_special_points_of_what_is_not_admissible_are_left_out(picture, results)
     assert f"period doubling ({kinds['period_doubling'] - 2})" in few.legend
     assert f"grazing ({kinds['grazing']})" in few.legend and "2 special points there: not drawn" in few.notes
     assert len(marks(few.axes[0])) == sum(kinds.values()) - 2
+
+
+def test_special_points_along_which_segments_return_count_once(picture, results):
+    """From the point where it loses its impact again, the Duffing oscillator's branch returns along its beginning."""
+    drawn, path = picture("branch", "returning"), results["returning"]
+    folds = places(path, "special", y="amplitude")[column(path, "branch/special_kind") == "fold"]
+    shown = [fold for fold in folds.tolist() if fold in marks(drawn.axes[0]).tolist()]
+    assert len(shown) == 4 and "fold (2)" in drawn.legend
 
 
 def test_branch_changes_its_look_at_special_points(picture, results):

@@ -88,7 +88,7 @@ REFUSALS = [
     ("family", {"x": "q", "y": "energy"}, "q has the axis particle, energy has not: pick an element"),
     ("family", {"table": "orbit"}, "it has no table orbit; it has orbits"),
     ("family", {"tasks": [99]}, "it has no task 99, only tasks 0 to 11"),
-    ("empty", {}, "energy has no finite value"),
+    ("empty", {}, "no row of orbits has a finite energy (outcome: admissible)"),
     ("bouncing", {"table": "trajectory/event", "tasks": [0]}, "trajectory/event has no rows of these tasks"),
 ]
 

@@ -95,6 +95,7 @@ PICTURES = [
     ("modes", "poles", {"all": True, "curves": 20}),
     ("modes", "obstacles", {}),
     ("modes", "one", {}),
+    ("modes", "spread", {}),
     ("modes", "family", COLUMN),
     ("sweep", "one", {}),
     ("sweep", "logarithmic", {}),
@@ -116,6 +117,7 @@ PICTURES = [
 REFUSALS = [
     ("modes", "stateless", {}, "it has no orbits/q (the study did not ask for orbit.states)"),
     ("modes", "nothing", {}, "no orbit of it is admissible"),
+    ("modes", "grid", {}, "2 swept parameters, this figure shows one at most"),
     ("sweep", "grid", {}, "2 swept parameters (orbit.period, model.gamma), this figure needs 1"),
     ("map", "family", {}, "1 swept parameter (model.gamma), this figure needs 2"),
     ("map", "twice", {}, "a value of model.gamma stands twice in the sweep"),

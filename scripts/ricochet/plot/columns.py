@@ -112,7 +112,7 @@ def columns(
     axes = sheet.panel()
     family = _family(result, rows, across, up)
     _draw(sheet, axes, _lines(result, rows, across), across, up, family)
-    _frame(sheet, axes, across, up)
+    _frame(sheet, axes, rows, across, up)
     _tell_apart(sheet, axes, family)
     _note_outcomes(sheet, rows)
     followed = [str(result.parameters["branch.parameter"])] if "branch.parameter" in result.parameters else []
@@ -227,12 +227,13 @@ def _draw_paths(axes: Axes, paths: list[Array], shades: list[Array], colours: Sc
 # --- around them ---
 
 
-def _frame(sheet: Sheet, axes: Axes, across: Quantity, up: Quantity) -> None:
+def _frame(sheet: Sheet, axes: Axes, table: Table, across: Quantity, up: Quantity) -> None:
     """Labels; logarithmic axes where values span decades, limits that a few blow-ups do not squeeze."""
     for name, shown, room in (("x", across, sheet.width), ("y", up, sheet.height)):
         values = shown.values[np.isfinite(shown.values)]
         if len(values) == 0:
-            raise FigureError(sheet.result.path, f"{shown.name} has no finite value")
+            ended = f" (outcome: {', '.join(sorted(set(table['outcome'])))})" if "outcome" in table.columns else ""
+            raise FigureError(sheet.result.path, f"no row of {table.name} has a finite {shown.name}{ended}")
         is_wide = values.min() > 0 and values.max() > _WIDE * values.min()
         getattr(axes, f"set_{name}scale")("log" if is_wide or scale.is_geometric(values) else "linear")
         getattr(axes, f"set_{name}lim")(*_limits(sheet, values, getattr(axes, f"get_{name}scale")() == "log"))
