@@ -306,7 +306,11 @@ def test_titles(drawn, family):
 def test_letters_that_the_font_lacks_are_named(plot, family):
     path = family.with_name("w.png")
     drawn = plot(family, "columns", "--title", "\u632f\u52d5 of a ring", "-o", path)
-    assert drawn.code == 0 and drawn.out == f"{path}\n" and drawn.err.startswith("ricochet-plot: the font has no \u632f \u52d5:")
+    assert (
+        drawn.code == 0
+        and drawn.out == f"{path}\n"
+        and drawn.err.startswith("ricochet-plot: the font has no \u632f \u52d5:")
+    )
     assert len(drawn.err.splitlines()) == 1
 
 

@@ -445,7 +445,9 @@ def test_multipliers_are_those_of_the_result(picture, results):
         marks = np.concatenate([line.get_xydata() for line in axes.lines if line.get_marker() in "osD"])
         assert len(marks) == known.sum()
         assert_among(marks, np.column_stack([np.repeat(at, multipliers.shape[1])[known.ravel()], heights[known]]))
-    assert drawn.heading[1].endswith(f"$\\gamma = {at[40]:g}$, task 40, {column(path, 'orbits/stable')[40]}, not admissible")
+    assert drawn.heading[1].endswith(
+        f"$\\gamma = {at[40]:g}$, task 40, {column(path, 'orbits/stable')[40]}, not admissible"
+    )
 
 
 def test_multipliers_of_one_argument_do_not_hide_one_another(picture):

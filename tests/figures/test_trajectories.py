@@ -464,9 +464,20 @@ def test_settings_hold_while_a_film_is_written(film, folder):
     assert set(widths) == {0.6} != {matplotlib.rcParams["hatch.linewidth"]}
 
 
+def test_a_film_is_there_whole_or_not_at_all(film, folder):
+    def torn(k):
+        raise OSError(28, "No space left on device")
+
+    with pytest.raises(OSError):
+        Film(film("quiet", frames=2).figure, torn, 2, 20, 50, "x").save(folder / "film.gif")
+    assert not list(folder.glob("film*"))
+
+
 def test_the_command_writes_a_film(results, folder, capsys):
     assert main([str(results["quiet"]), "animation", "--frames", "3", "-o", str(folder / "film")]) == 0
     assert capsys.readouterr().out == f"{folder / 'film.gif'}\n" and (folder / "film.gif").stat().st_size > 1000
+    assert main([str(results["quiet"]), "animation", "--frames", "2", "-o", str(folder / "film.GIF")]) == 0
+    assert capsys.readouterr().out == f"{folder / 'film.GIF'}\n"
     assert main([str(results["quiet"]), "animation", "-o", str(folder / "film.png")]) == 2
     assert "animation is written as gif, mp4, not as png" in capsys.readouterr().err
 

@@ -19,7 +19,7 @@ from ricochet.plot import catalogue, look, scale
 from ricochet.plot.catalogue import figure
 from ricochet.plot.quantities import ROW, Quantity, numeric_columns, quantity
 from ricochet.plot.sheet import FigureError, Sheet, words_of, wrapped
-from ricochet.plot.words import assignment, count, parameter_label
+from ricochet.plot.words import assignment, count, followed, parameter_label
 from ricochet.result import Result
 from ricochet.sweep import Array
 from ricochet.table import Table
@@ -115,8 +115,8 @@ def columns(
     _frame(sheet, axes, rows, across, up)
     _tell_apart(sheet, axes, family)
     _note_outcomes(sheet, rows)
-    followed = [str(result.parameters["branch.parameter"])] if "branch.parameter" in result.parameters else []
-    return sheet.finish(f"{up.name} of {rows.name} against {across.name}", followed)
+    varied = [followed(result)] if "branch.parameter" in result.parameters else []
+    return sheet.finish(f"{up.name} of {rows.name} against {across.name}", varied)
 
 
 def _rows(result: Result, name: str, tasks: Sequence[int] | None) -> Table:

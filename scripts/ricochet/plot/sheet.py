@@ -168,7 +168,9 @@ class Sheet:
             if limits is None:
                 continue
             if getattr(main, f"get_{axis}scale")() == "log" and min(limits) <= 0:
-                raise FigureError(self.result.path, f"limits {limits[0]:g} {limits[1]:g} of a logarithmic axis: both > 0")
+                raise FigureError(
+                    self.result.path, f"limits {limits[0]:g} {limits[1]:g} of a logarithmic axis: both > 0"
+                )
             getattr(main, f"set_{axis}lim")(*limits)
 
     # --- the heading ---

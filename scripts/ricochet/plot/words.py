@@ -139,6 +139,16 @@ def equation(symbol: str, value: str) -> str:
     return f"{symbol[:-1]} = {value}$" if symbol.endswith("$") else f"{symbol} = ${value}$"
 
 
+def followed(result: Result) -> str:
+    """The key of the parameter that a family is followed in."""
+    return str(result.parameters["branch.parameter"])
+
+
+def second(result: Result) -> str:
+    """The key of the second parameter of curves."""
+    return str(result.parameters["branch.trace.parameter"])
+
+
 def task_words(result: Result, task: int) -> list[str]:
     """The swept parameters of a task with their values; of one without a sweep nothing."""
     return [assignment(result, name, float(result.sweep.values[name][task])) for name in result.swept]

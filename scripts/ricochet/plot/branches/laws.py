@@ -15,7 +15,7 @@ from ricochet.plot import look, scale
 from ricochet.plot.branches import family
 from ricochet.plot.catalogue import CATALOGUE, figure
 from ricochet.plot.sheet import FigureError, Sheet
-from ricochet.plot.words import assignment, obstacles
+from ricochet.plot.words import assignment, followed, obstacles
 from ricochet.result import Result
 from ricochet.sweep import Array
 
@@ -27,8 +27,8 @@ _SOFT: dict[str, Any] = {"linestyle": (0, (4, 1.6)), "linewidth": 1.6}
 def _unfit(result: Result) -> str:
     """Why the shapes of a branch cannot be compared; "" if they can."""
     reason = family.none_begins(result)
-    if not reason and family.followed(result) != _GAMMA:
-        reason = f"a branch along {family.followed(result)}, this figure needs one along {_GAMMA}"
+    if not reason and followed(result) != _GAMMA:
+        reason = f"a branch along {followed(result)}, this figure needs one along {_GAMMA}"
     return reason
 
 

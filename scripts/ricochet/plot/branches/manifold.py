@@ -17,7 +17,7 @@ from ricochet.plot import look
 from ricochet.plot.branches import family
 from ricochet.plot.catalogue import figure
 from ricochet.plot.sheet import FigureError, Sheet, is_narrow
-from ricochet.plot.words import count, state_symbol
+from ricochet.plot.words import count, followed, state_symbol
 from ricochet.result import Result
 from ricochet.sweep import Array
 from ricochet.table import Table
@@ -71,7 +71,7 @@ def manifold(
         sheet.note(f"{count(left, 'point')} that {'is' if left == 1 else 'are'} not admissible{limit}: not drawn")
     name = family.task_name(result, task)
     about = "surface of the motions of a family" + (f": {name}" if name else "")
-    drawn = sheet.finish(about=about, varied=[family.followed(result)])
+    drawn = sheet.finish(about=about, varied=[followed(result)])
     _fit(drawn, axes, bar)
     return drawn
 

@@ -16,7 +16,7 @@ from ricochet.plot import look, scale
 from ricochet.plot.branches import family
 from ricochet.plot.catalogue import figure
 from ricochet.plot.sheet import FigureError, Sheet, is_narrow
-from ricochet.plot.words import assignment, obstacles, state_symbol
+from ricochet.plot.words import assignment, followed, obstacles, state_symbol
 from ricochet.result import Result
 from ricochet.sweep import Array
 from ricochet.table import Table
@@ -64,7 +64,7 @@ def motions(
     for note in drawing.notes:
         sheet.note(note)
     name = family.task_name(result, task)
-    return sheet.finish(about=f"motions: {name}" if name else "", varied=[family.followed(result)])
+    return sheet.finish(about=f"motions: {name}" if name else "", varied=[followed(result)])
 
 
 def _chosen(result: Result, table: Table, points: Sequence[int] | None) -> list[int]:
@@ -141,9 +141,9 @@ class _Drawing:
 
     def _name(self, row: int) -> str:
         words = [f"{name} {self.table[name][row]:.4g}" for name in ("energy", "period")]
-        followed = family.followed(self.result)
-        if followed not in ("orbit.energy", "orbit.period"):
-            words[0] = assignment(self.result, followed, float(self.table["parameter"][row]), 4)
+        parameter = followed(self.result)
+        if parameter not in ("orbit.energy", "orbit.period"):
+            words[0] = assignment(self.result, parameter, float(self.table["parameter"][row]), 4)
         outcome = self.table["outcome"][row]
         if outcome != "admissible":
             words.append("grazing" if outcome == "grazing" else "not admissible")

@@ -17,7 +17,7 @@ from ricochet.plot import look, scale
 from ricochet.plot.branches import colours, family, inset
 from ricochet.plot.branches.family import INADMISSIBLE
 from ricochet.plot.sheet import FigureError, Sheet
-from ricochet.plot.words import count
+from ricochet.plot.words import count, followed
 from ricochet.result import Result
 from ricochet.sweep import Array
 
@@ -80,7 +80,9 @@ class Plane:
         kept = [self._kept(segment, without) for segment in self.segments]
         self.at = np.concatenate([self._nodes(segment)[nodes] for segment, nodes in zip(self.segments, kept)])
         self.kinds = np.concatenate([segment.kinds[nodes] for segment, nodes in zip(self.segments, kept)])
-        owners = [np.tile([segment.task, segment.number], (nodes.sum(), 1)) for segment, nodes in zip(self.segments, kept)]
+        owners = [
+            np.tile([segment.task, segment.number], (nodes.sum(), 1)) for segment, nodes in zip(self.segments, kept)
+        ]
         self.owners = np.concatenate(owners)
         self.sound = np.concatenate([segment.sound[nodes] for segment, nodes in zip(self.segments, kept)])
         self.hidden = sum(int((np.isin(s.kinds, without) & (s.sound | all)).sum()) for s in self.segments)
@@ -157,7 +159,7 @@ class Plane:
         for note in filter(None, [self.left_out(), *notes]):
             sheet.note(note)
         words = colours.others(self.result, self.tasks, self.colours.shown)
-        return sheet.finish(varied=[family.followed(self.result)], words=words)
+        return sheet.finish(varied=[followed(self.result)], words=words)
 
     def _limit(self, sheet: Sheet, axes: Axes) -> None:
         """Limits of the panel, which stay. Solutions that are no motions may blow up."""

@@ -60,7 +60,9 @@ def multipliers(result: Result, *, task: int | None = None) -> Figure:
     if panels:
         sheet.legend(_draw_sweep(panels, result, chosen))
     number = [f"task {chosen}"] if result.sweep.tasks > 1 else []
-    verdict = [str(result["orbits"]["stable"][chosen])] + [outcomes.NOT_ADMISSIBLE] * (not outcomes.sound(result)[chosen])
+    verdict = [str(result["orbits"]["stable"][chosen])] + [outcomes.NOT_ADMISSIBLE] * (
+        not outcomes.sound(result)[chosen]
+    )
     return sheet.finish(words=[*outcomes.pattern(result), *task_words(result, chosen), *number, *verdict])
 
 

@@ -65,7 +65,9 @@ class Film:
         try:
             self.animation.save(path, writer=animation.FFMpegWriter(fps=self.fps), dpi=self.dpi)
         except subprocess.CalledProcessError as trouble:
-            raise FigureError(self.source, f"ffmpeg did not write the animation: exit code {trouble.returncode}") from trouble
+            raise FigureError(
+                self.source, f"ffmpeg did not write the animation: exit code {trouble.returncode}"
+            ) from trouble
 
     def _write_gif(self, path: str) -> None:
         with open(path, "wb") as file:
