@@ -117,6 +117,7 @@ PICTURES = [
 REFUSALS = [
     ("modes", "stateless", {}, "it has no orbits/q (the study did not ask for orbit.states)"),
     ("modes", "nothing", {}, "no orbit of it is admissible"),
+    ("modes", "family", {"curves": 0}, "curves = 0, expected at least 1"),
     ("modes", "grid", {}, "2 swept parameters, this figure shows one at most"),
     ("sweep", "grid", {}, "2 swept parameters (orbit.period, model.gamma), this figure needs 1"),
     ("map", "family", {}, "1 swept parameter (model.gamma), this figure needs 2"),

@@ -42,6 +42,13 @@ class FigureError(ResultError):
     """What a figure needs and the result does not have; `reason` says what is missing."""
 
 
+def expect_count(result: Result, name: str, value: int | None, most: int | None = None) -> None:
+    """Refuses a number of things to draw that is below 1, or above the most; None is the default of a figure."""
+    if value is not None and not 1 <= value <= (most or value):
+        upper = f"1 to {most}" if most else "at least 1"
+        raise FigureError(result.path, f"{name} = {value}, expected {upper}")
+
+
 @dataclass(frozen=True)
 class Style:
     """How figures are drawn: `column` as wide as a column of a journal, or `width` inches wide; `title` above them

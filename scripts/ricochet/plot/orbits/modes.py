@@ -17,7 +17,7 @@ from matplotlib.ticker import MaxNLocator
 from ricochet.plot import look, scale
 from ricochet.plot.catalogue import figure
 from ricochet.plot.orbits import outcomes
-from ricochet.plot.sheet import FigureError, Sheet
+from ricochet.plot.sheet import FigureError, Sheet, expect_count
 from ricochet.plot.words import count, obstacles, parameter_label
 from ricochet.result import Result
 from ricochet.sweep import Array
@@ -41,6 +41,7 @@ _HITS = (  # of the particles of the pattern
 def modes(result: Result, *, all: bool = False, curves: int = 60) -> Figure:
     """Positions and velocities just after t = 0 against the particle, a curve for each orbit, its colour the parameter.
     Bands mark the particles that hit, hatching the floors."""
+    expect_count(result, "curves", curves)
     usable, left_out, missing = _usable(result, all)
     rows = _thinned(result, usable, curves)
     at = _parameter(result)
@@ -88,7 +89,7 @@ def _thinned(result: Result, usable: Array, curves: int) -> Array:
     """At most so many tasks, evenly picked, in the order of the parameter."""
     rows = np.flatnonzero(usable)
     rows = rows[np.argsort(_parameter(result)[rows], kind="stable")]
-    picked = np.linspace(0, len(rows) - 1, min(len(rows), max(curves, 1)))
+    picked = np.linspace(0, len(rows) - 1, min(len(rows), curves))
     return np.asarray(rows[np.unique(picked.round().astype(int))])
 
 
