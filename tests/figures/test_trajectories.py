@@ -464,6 +464,12 @@ def test_settings_hold_while_a_film_is_written(film, folder):
     assert set(widths) == {0.6} != {matplotlib.rcParams["hatch.linewidth"]}
 
 
+def test_few_samples_are_said(picture):
+    """Studies of exponents store two."""
+    for figure in ("trajectory", "phase", "spacetime"):
+        assert "2 samples only (time.samples)" in picture(figure, "exponents").notes
+
+
 def test_a_film_is_there_whole_or_not_at_all(film, folder):
     def torn(k):
         raise OSError(28, "No space left on device")
