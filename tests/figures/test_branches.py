@@ -1,5 +1,7 @@
 """Figures of results of kind branch: branches, curves of special points, nonlinear modes and their motions."""
 
+import re
+
 import numpy as np
 import pytest
 from album import assert_among, column, counts
@@ -24,6 +26,14 @@ branch: {{parameter: model.gamma, from: 0, to: {to}, states: true}}
 STUDIES = {
     "family": FAMILY,
     "forced": FORCED,
+    "returning": """kind: branch
+title: a Duffing oscillator beside a wall, through resonance
+model: {type: duffing_chain, particles: 1, mass: 1, stiffness: 1, cubic: 0.5, damping: 0.1, wall: 1, restitution: 0.8,
+        force: 0.3, frequency: 0.6}
+orbit: {motion: forced}
+branch: {parameter: model.frequency, from: 0.6, to: 2.5, cross: true, segments: 8}
+""",
+    "driven": FORCED.replace("cross: true", "cross: true, samples: 33"),
     "rigid": RING.format(title="under the impact law", hertz="", to=0.19),
     "soft": RING.format(title="under Hertz's law", hertz=", hertz: 100", to=0.15),
     "curves": """kind: branch
@@ -218,6 +228,14 @@ def test_special_points_of_what_is_not_admissible_are_left_out(picture, results)
     assert len(marks(few.axes[0])) == sum(kinds.values()) - 2
 
 
+def test_special_points_along_which_segments_return_count_once(picture, results):
+    """From the point where it loses its impact again, the Duffing oscillator's branch returns along its beginning."""
+    drawn, path = picture("branch", "returning"), results["returning"]
+    folds = places(path, "special", y="amplitude")[column(path, "branch/special_kind") == "fold"]
+    shown = [fold for fold in folds.tolist() if fold in marks(drawn.axes[0]).tolist()]
+    assert len(shown) == 4 and "fold (2)" in drawn.legend
+
+
 def test_branch_changes_its_look_at_special_points(picture, results):
     """The admissible stretch ends where it grazes, the unstable one at the fold."""
     path = results["forced"]
@@ -306,7 +324,7 @@ def test_frequency_energy_plot_goes_through_all_motions(picture, results):
 
 
 def test_values_of_a_sweep_differ_in_colour_and_have_the_words_of_all_figures(picture):
-    words = [f"cubic term of spring 1 $= {value}$" for value in ("0", "0.1", "0.2")]
+    words = [f"cubic term of spring 1 = ${value}$" for value in ("0", "0.1", "0.2")]
     for figure in ("frequency-energy", "branch"):
         drawn = picture(figure, "modes")
         assert [label for label in drawn.legend if "cubic" in label] == words
@@ -331,8 +349,9 @@ def test_motions_are_those_of_the_points(picture, results):
 
 def test_motions_are_drawn_with_their_obstacles(picture):
     drawn = picture("motions", "modes")
-    assert drawn.legend == ["$q_{0}$", "$q_{1}$", "first state", "wall of $q_{1}$"]
+    assert drawn.legend == ["$q_{0}$", "$q_{1}$", "first state", "wall of $q_{1}$", "wall"]
     assert "wall at $2$" in drawn.heading[2]
+    assert not drawn.axes[0].patches  # q0 passes the wall of q1
     for axes in drawn.axes:  # q1 stands on every vertical axis
         assert 2.0 in [line.get_ydata()[0] for line in axes.lines if np.ptp(line.get_ydata()) == 0]
         assert axes.get_ylim()[1] > 2
@@ -340,7 +359,17 @@ def test_motions_are_drawn_with_their_obstacles(picture):
     assert 2.0 in [line.get_xdata()[0] for line in sideways.lines if np.ptp(line.get_xdata()) == 0]
 
 
-@pytest.mark.parametrize("style", [None, COLUMN])
+def test_motions_name_the_parameter_and_differ_in_amplitude(picture, results):
+    """The branch of a driven oscillator runs along its force; segments beyond grazing may return to its beginning."""
+    drawn, path = picture("motions", "driven"), results["driven"]
+    titles = [axes.get_title(loc="left") for axes in drawn.axes[::2]]
+    assert all(re.match(r"force = \$[0-9.]+\$, period", title) for title in titles)
+    largest = [np.abs(axes.lines[0].get_ydata()).max() for axes in drawn.axes[::2]]
+    drawn_from = column(path, "branch/point_amplitude")[admissible(path)]
+    assert largest[0] == pytest.approx(drawn_from.min(), rel=0.01) and largest == sorted(largest)
+
+
+@pytest.mark.parametrize("style", [None, COLUMN, {"xlim": (0, 1), "ylim": (0, 1), **COLUMN}])
 def test_manifold_shows_the_labels_of_its_three_axes(picture, style):
     drawn = picture("manifold", "modes", style=style)
     drawn.figure.draw_without_rendering()

@@ -58,6 +58,9 @@ STUDIES = {
     "bouncing": TRAJECTORY,
     "branch": BRANCH,
     "diagram": DIAGRAM,
+    "three": ring("three parameters", GRID + '\n  - {parameter: "model.floor[0]", values: [-1, -0.9]}').replace(
+        "floor: -1", "floor: [-1, -1, -1, -1, -1, -1]"
+    ),
 }
 MADE = {
     "empty": altered("family", without_values),
@@ -88,7 +91,7 @@ REFUSALS = [
     ("family", {"x": "q", "y": "energy"}, "q has the axis particle, energy has not: pick an element"),
     ("family", {"table": "orbit"}, "it has no table orbit; it has orbits"),
     ("family", {"tasks": [99]}, "it has no task 99, only tasks 0 to 11"),
-    ("empty", {}, "energy has no finite value"),
+    ("empty", {}, "no row of orbits has a finite energy (outcome: admissible)"),
     ("bouncing", {"table": "trajectory/event", "tasks": [0]}, "trajectory/event has no rows of these tasks"),
 ]
 
@@ -240,3 +243,8 @@ def test_it_is_drawn_unasked_only_if_no_other_figure_is(results, monkeypatch):
         assert any(each.natural(result) for each in others)
         monkeypatch.setattr("ricochet.plot.catalogue.CATALOGUE", {"columns": spec})
         assert spec.natural(result)
+
+
+def test_curves_of_one_colour_are_explained(picture):
+    assert picture("columns", "three").notes.startswith("curves of one colour differ in $\\gamma$; --tasks picks some")
+    assert "of one colour" not in picture("columns", "grid", y="clearance", style={"column": True}).notes

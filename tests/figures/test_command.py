@@ -303,6 +303,17 @@ def test_titles(drawn, family):
     assert title("--title", "none") == title("--title", "") == []
 
 
+def test_letters_that_the_font_lacks_are_named(plot, family):
+    path = family.with_name("w.png")
+    drawn = plot(family, "columns", "--title", "\u632f\u52d5 of a ring", "-o", path)
+    assert (
+        drawn.code == 0
+        and drawn.out == f"{path}\n"
+        and drawn.err.startswith("ricochet-plot: the font has no \u632f \u52d5:")
+    )
+    assert len(drawn.err.splitlines()) == 1
+
+
 def test_widths(plot, family):
     def pixels(*words):
         path = family.with_name("w.png")
@@ -394,7 +405,7 @@ REFUSALS = [
         ["figure modes has no option --table; its options are: --all, --curves"],
     ),
     (["{family}", "modes", "--curves", "few"], ["--curves: few is not a whole number"]),
-    (["{family}", "modes", "--width", "0.5"], ["--width: 0.5 is not a width, 1 to 100 inches"]),
+    (["{family}", "modes", "--width", "0.5"], ["--width: 0.5 is not a width, 3 to 100 inches"]),
     (["{family}", "modes", "--width", "wide"], ["--width: wide is not a number"]),
     (["{family}", "modes", "--width", "5", "--column"], ["--column: not allowed with argument --width"]),
     (["{family}", "modes", "--xlim", "1"], ["--xlim: expected 2 arguments"]),

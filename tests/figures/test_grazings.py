@@ -167,7 +167,7 @@ def test_criterion_says_where_it_grazes_and_what_follows(picture, results):
     assert about == "continuous grazing bifurcation: windows of rising periods with chaos between them"
     assert system.startswith("one particle, damping $3$, wall at $1$, restitution $0.8$,")
     assert (
-        rf"$\omega = 4$, force $= {force:.6g}$" in system and r"$\lambda = 0.5488$" in system and "$A_g = 16$" in system
+        rf"$\omega = 4$, force = ${force:.6g}$" in system and r"$\lambda = 0.5488$" in system and "$A_g = 16$" in system
     )
     assert "$c_{0} < 0$, another impact after one return" in picture("criterion", "light").heading[1]
     assert (

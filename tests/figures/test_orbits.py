@@ -6,7 +6,7 @@ from album import assert_among, column, counts
 from shelf import FAMILY, broken, over_gamma, ring
 
 import ricochet
-from ricochet.plot.orbits.resonance import largest_eigenvalue
+from ricochet.plot.orbits.resonance import wave_numbers
 
 PERIODS = "  - {parameter: orbit.period, values: [6, 5.6, 5, 4.5, 4.2, 3.9, 3.4]}\n"
 GRID = PERIODS + over_gamma("from: 0, to: 0.6, points: 15")
@@ -33,6 +33,8 @@ CHAINS = {
     "fixed_8": chain(8, "fixed"),
     "free_4": chain(4, "free"),
     "equal": chain(4, "fixed", EQUAL, "shooting"),
+    "symmetric": chain(8, "fixed").replace("[1]", "[2, 5]"),
+    "in_phase": chain(4, "periodic").replace("[1]", "[0, 1, 2, 3]"),
     "unequal": chain(3, "fixed", ", mass: [1, 2, 1]", "shooting"),
     "nonlinear": chain(3, "fixed", ", cubic: 0.1", "shooting"),
 }
@@ -93,6 +95,7 @@ PICTURES = [
     ("modes", "poles", {"all": True, "curves": 20}),
     ("modes", "obstacles", {}),
     ("modes", "one", {}),
+    ("modes", "spread", {}),
     ("modes", "family", COLUMN),
     ("sweep", "one", {}),
     ("sweep", "logarithmic", {}),
@@ -114,6 +117,8 @@ PICTURES = [
 REFUSALS = [
     ("modes", "stateless", {}, "it has no orbits/q (the study did not ask for orbit.states)"),
     ("modes", "nothing", {}, "no orbit of it is admissible"),
+    ("modes", "family", {"curves": 0}, "curves = 0, expected at least 1"),
+    ("modes", "grid", {}, "2 swept parameters, this figure shows one at most"),
     ("sweep", "grid", {}, "2 swept parameters (orbit.period, model.gamma), this figure needs 1"),
     ("map", "family", {}, "1 swept parameter (model.gamma), this figure needs 2"),
     ("map", "twice", {}, "a value of model.gamma stands twice in the sweep"),
@@ -376,11 +381,10 @@ def resonance(drawn):
 
 
 @pytest.mark.parametrize("ends", ["periodic", "fixed", "free"])
-def test_the_largest_eigenvalue_is_that_of_the_coupling_matrix(ends):
-    for particles in range(2, 13):
-        wanted = np.linalg.eigvalsh(coupling_matrix(particles, ends))[-1]
-        assert largest_eigenvalue(particles, ends) == pytest.approx(wanted, rel=1e-12)
-    assert largest_eigenvalue(1, ends) == pytest.approx(2 if ends == "fixed" else 0)
+def test_wave_numbers_give_the_eigenvalues_of_the_coupling_matrix(ends):
+    for particles in range(3, 13):
+        wanted = np.unique(np.linalg.eigvalsh(coupling_matrix(particles, ends)).round(9))[::-1]
+        assert 4 * np.sin(wave_numbers(particles, ends) / 2) ** 2 == pytest.approx(wanted, abs=2e-9)
 
 
 @pytest.mark.parametrize(
@@ -402,6 +406,18 @@ def test_the_curve_is_where_the_program_finds_the_first_resonance(picture, resul
     period, gamma = resonance(picture("map", "fixed_8", quantity="none")).T
     at_first = np.interp(1.5 * np.pi, period, gamma)
     assert first == pytest.approx(0.20049, abs=1e-5) and at_first == pytest.approx(first, abs=1e-5)
+
+
+def test_a_symmetric_pattern_has_the_curve_of_the_highest_symmetric_mode(picture):
+    period, gamma = resonance(picture("map", "symmetric", quantity="none")).T
+    for T, coupling in zip(period[::40], gamma[::40]):
+        squares, shapes = np.linalg.eigh(np.eye(8) + coupling * coupling_matrix(8, "fixed"))
+        symmetric = squares[np.isclose(shapes[2], shapes[5])]
+        assert np.sqrt(symmetric[-1]) == pytest.approx(2 * np.pi / T, rel=1e-12) and symmetric[-1] < squares[-1]
+
+
+def test_impacts_of_all_particles_at_once_have_no_curve(picture):
+    assert resonance(picture("map", "in_phase", quantity="none")) is None
 
 
 def test_the_curve_of_an_even_ring_is_that_of_the_paper(picture):
@@ -430,7 +446,9 @@ def test_multipliers_are_those_of_the_result(picture, results):
         marks = np.concatenate([line.get_xydata() for line in axes.lines if line.get_marker() in "osD"])
         assert len(marks) == known.sum()
         assert_among(marks, np.column_stack([np.repeat(at, multipliers.shape[1])[known.ravel()], heights[known]]))
-    assert drawn.heading[1].endswith(f"$\\gamma = {at[40]:g}$, task 40, {column(path, 'orbits/stable')[40]}")
+    assert drawn.heading[1].endswith(
+        f"$\\gamma = {at[40]:g}$, task 40, {column(path, 'orbits/stable')[40]}, not admissible"
+    )
 
 
 def test_multipliers_of_one_argument_do_not_hide_one_another(picture):
@@ -493,7 +511,7 @@ def test_ritz_has_the_errors_of_the_result(picture, results):
         assert (np.concatenate(lines) == np.column_stack([functions, column(path, f"orbits/{name}")])).all()
     title, system = drawn.heading
     assert title == "Ritz" and system.startswith("2 masses in series, stiffness") and system.endswith("$T = 6.8$")
-    assert drawn.legend == ["cubic term of spring 1 $= 0$", "cubic term of spring 1 $= 0.1$"] and drawn.notes == ""
+    assert drawn.legend == ["cubic term of spring 1 = $0$", "cubic term of spring 1 = $0.1$"] and drawn.notes == ""
 
 
 def test_ritz_compares_with_a_result_without_constants(picture, results):

@@ -342,7 +342,7 @@ def test_convergence_of_exponents_is_that_of_the_task(picture, results):
     for k in range(2):
         assert (lines[k] == np.column_stack([time, history[:, k]])).all()
     assert (history[-1] == column(path, "trajectory/lyapunov")[5]).all() and len(history) > 5
-    assert drawn.heading[1].endswith("$= 12$, task 5")
+    assert drawn.heading[1].endswith("= $12$, task 5")
 
 
 def test_gaps_of_exponents_are_explained(picture):
@@ -464,9 +464,26 @@ def test_settings_hold_while_a_film_is_written(film, folder):
     assert set(widths) == {0.6} != {matplotlib.rcParams["hatch.linewidth"]}
 
 
+def test_few_samples_are_said(picture):
+    """Studies of exponents store two."""
+    for figure in ("trajectory", "phase", "spacetime"):
+        assert "2 samples only (time.samples)" in picture(figure, "exponents").notes
+
+
+def test_a_film_is_there_whole_or_not_at_all(film, folder):
+    def torn(k):
+        raise OSError(28, "No space left on device")
+
+    with pytest.raises(OSError):
+        Film(film("quiet", frames=2).figure, torn, 2, 20, 50, "x").save(folder / "film.gif")
+    assert not list(folder.glob("film*"))
+
+
 def test_the_command_writes_a_film(results, folder, capsys):
     assert main([str(results["quiet"]), "animation", "--frames", "3", "-o", str(folder / "film")]) == 0
     assert capsys.readouterr().out == f"{folder / 'film.gif'}\n" and (folder / "film.gif").stat().st_size > 1000
+    assert main([str(results["quiet"]), "animation", "--frames", "2", "-o", str(folder / "film.GIF")]) == 0
+    assert capsys.readouterr().out == f"{folder / 'film.GIF'}\n"
     assert main([str(results["quiet"]), "animation", "-o", str(folder / "film.png")]) == 2
     assert "animation is written as gif, mp4, not as png" in capsys.readouterr().err
 

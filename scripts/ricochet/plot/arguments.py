@@ -147,6 +147,6 @@ def _whole(word: str) -> int:
 
 def _inches(word: str) -> float:
     value = _number(word)
-    if not 1 <= value <= 100:
-        raise argparse.ArgumentTypeError(f"{word} is not a width, 1 to 100 inches")
+    if not 3 <= value <= 100:  # below it letters as large as those of a page cover one another
+        raise argparse.ArgumentTypeError(f"{word} is not a width, 3 to 100 inches")
     return value

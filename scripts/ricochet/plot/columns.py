@@ -19,7 +19,7 @@ from ricochet.plot import catalogue, look, scale
 from ricochet.plot.catalogue import figure
 from ricochet.plot.quantities import ROW, Quantity, numeric_columns, quantity
 from ricochet.plot.sheet import FigureError, Sheet, words_of, wrapped
-from ricochet.plot.words import assignment, count, parameter_label
+from ricochet.plot.words import assignment, count, followed, parameter_label, parameter_symbol
 from ricochet.result import Result
 from ricochet.sweep import Array
 from ricochet.table import Table
@@ -41,11 +41,13 @@ class _Family:
     name     "model.gamma", "task", "particle"; "" if all look alike
     values   its value at every row [rows], or of every element [elements]
     per_row  which of both
+    others   parameters in which curves of one colour differ
     """
 
     name: str
     values: Array
     per_row: bool = True
+    others: tuple[str, ...] = ()
 
     @property
     def different(self) -> Array:
@@ -112,11 +114,11 @@ def columns(
     axes = sheet.panel()
     family = _family(result, rows, across, up)
     _draw(sheet, axes, _lines(result, rows, across), across, up, family)
-    _frame(sheet, axes, across, up)
+    _frame(sheet, axes, rows, across, up)
     _tell_apart(sheet, axes, family)
     _note_outcomes(sheet, rows)
-    followed = [str(result.parameters["branch.parameter"])] if "branch.parameter" in result.parameters else []
-    return sheet.finish(f"{up.name} of {rows.name} against {across.name}", followed)
+    varied = [followed(result)] if "branch.parameter" in result.parameters else []
+    return sheet.finish(f"{up.name} of {rows.name} against {across.name}", varied)
 
 
 def _rows(result: Result, name: str, tasks: Sequence[int] | None) -> Table:
@@ -180,7 +182,8 @@ def _family(result: Result, table: Table, across: Quantity, up: Quantity) -> _Fa
         others.pop(next(reversed(others), ""), None)  # curves run along the last one
     varied = {name: values for name, values in others.items() if len(np.unique(values)) > 1}
     if len(varied) == 1 or (varied and is_grid):
-        return _Family(*next(iter(varied.items())))
+        name, *rest = varied
+        return _Family(name, varied[name], others=tuple(rest))
     if varied and table.tasks is not None:
         return _Family("task", table.tasks)
     extra, elements = up.axes[len(across.axes) :], up.values.shape[1 + len(across.axes) :]
@@ -227,12 +230,13 @@ def _draw_paths(axes: Axes, paths: list[Array], shades: list[Array], colours: Sc
 # --- around them ---
 
 
-def _frame(sheet: Sheet, axes: Axes, across: Quantity, up: Quantity) -> None:
+def _frame(sheet: Sheet, axes: Axes, table: Table, across: Quantity, up: Quantity) -> None:
     """Labels; logarithmic axes where values span decades, limits that a few blow-ups do not squeeze."""
     for name, shown, room in (("x", across, sheet.width), ("y", up, sheet.height)):
         values = shown.values[np.isfinite(shown.values)]
         if len(values) == 0:
-            raise FigureError(sheet.result.path, f"{shown.name} has no finite value")
+            ended = f" (outcome: {', '.join(sorted(set(table['outcome'])))})" if "outcome" in table.columns else ""
+            raise FigureError(sheet.result.path, f"no row of {table.name} has a finite {shown.name}{ended}")
         is_wide = values.min() > 0 and values.max() > _WIDE * values.min()
         getattr(axes, f"set_{name}scale")("log" if is_wide or scale.is_geometric(values) else "linear")
         getattr(axes, f"set_{name}lim")(*_limits(sheet, values, getattr(axes, f"get_{name}scale")() == "log"))
@@ -258,6 +262,9 @@ def _tell_apart(sheet: Sheet, axes: Axes, family: _Family) -> None:
     """The legend of a few values, or the colour bar of many."""
     if not family.name:
         return
+    if family.others:
+        names = " and ".join(parameter_symbol(sheet.result, name) for name in family.others)
+        sheet.note(f"curves of one colour differ in {names}; --tasks picks some")
     colours = family.colours()
     is_parameter = family.name in sheet.result.swept
     if not family.is_listed:

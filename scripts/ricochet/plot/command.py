@@ -6,6 +6,7 @@ import argparse
 import os
 import signal
 import sys
+import warnings
 from collections.abc import Sequence
 from typing import Any
 
@@ -17,7 +18,7 @@ from matplotlib.backend_bases import FigureCanvasBase
 from ricochet.file import ResultError
 from ricochet.plot.arguments import COMMON, Unusable, flag, near, options_of
 from ricochet.plot.catalogue import CATALOGUE, KINDS, Spec, figures_of, in_order
-from ricochet.plot.sheet import FigureError, save, style
+from ricochet.plot.sheet import FigureError, missing_letters, save, style
 from ricochet.result import Result
 
 _MOST_PARTS = 12  # tasks or lines of which figures are drawn that were not asked for by name
@@ -75,6 +76,7 @@ def _run(options: argparse.Namespace) -> int:
         specs = _chosen(result, options.name, given)
         jobs = [(spec, pick) for spec in specs for pick in _picks(spec, result, given, asked=options.name is not None)]
         paths = [_path(options, result, spec, pick, len(jobs)) for spec, pick in jobs]
+        _warn_of_letters(result.title if options.title is None else options.title)
         with style(**_style(options)):
             return _draw(result, [(spec, {**given, **pick}, path) for (spec, pick), path in zip(jobs, paths)])
 
@@ -181,9 +183,17 @@ def _stem_and_suffix(options: argparse.Namespace) -> tuple[str, str]:
     return stem, suffix or (f".{options.format}" if options.format else "")
 
 
+def _warn_of_letters(title: str) -> None:
+    letters = " ".join(missing_letters(title))
+    if letters:
+        _complain(f"the font has no {letters}: boxes stand in the title; --title TEXT gives another one")
+
+
 def _write(figure: Any, path: str) -> None:
     try:
-        save(figure, path)
+        with warnings.catch_warnings():
+            warnings.filterwarnings("ignore", "Glyph .* missing")  # said once, in other words
+            save(figure, path)
     except OSError as trouble:
         raise Unusable(f"cannot write {path}: {trouble.strerror or trouble}") from trouble
 

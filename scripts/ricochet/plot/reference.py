@@ -20,7 +20,7 @@ matplotlib's figure; options are keyword arguments ([python.md](python.md#figure
 | `-o PATH` | the file, whose suffix is the format; what the names of several files begin with; or a folder |
 | `--format png\\|pdf\\|svg` | the format; of an animation gif or mp4 |
 | `--title TEXT` | title instead of the study's; `none` for no title |
-| `--column`, `--width INCHES` | as wide as a column of a journal, 86 mm; so wide |
+| `--column`, `--width INCHES` | as wide as a column of a journal, 86 mm; so wide, at least 3 |
 | `--xlim A B`, `--ylim A B` | limits of the axes of the main panel |
 
 What a result cannot give is one line on standard error, and exit code 2.

@@ -20,7 +20,7 @@ import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.font_manager import FontProperties
+from matplotlib.font_manager import FontProperties, findfont, get_font
 from matplotlib.path import Path
 from matplotlib.textpath import TextPath
 
@@ -40,6 +40,13 @@ _SLENDER = 0.55  # power of its shrinking with which a figure loses height
 
 class FigureError(ResultError):
     """What a figure needs and the result does not have; `reason` says what is missing."""
+
+
+def expect_count(result: Result, name: str, value: int | None, most: int | None = None) -> None:
+    """Refuses a number of things to draw that is below 1, or above the most; None is the default of a figure."""
+    if value is not None and not 1 <= value <= (most or value):
+        upper = f"1 to {most}" if most else "at least 1"
+        raise FigureError(result.path, f"{name} = {value}, expected {upper}")
 
 
 @dataclass(frozen=True)
@@ -168,7 +175,9 @@ class Sheet:
             if limits is None:
                 continue
             if getattr(main, f"get_{axis}scale")() == "log" and min(limits) <= 0:
-                raise FigureError(self.result.path, f"limits {limits[0]:g} {limits[1]:g} of a logarithmic axis: both > 0")
+                raise FigureError(
+                    self.result.path, f"limits {limits[0]:g} {limits[1]:g} of a logarithmic axis: both > 0"
+                )
             getattr(main, f"set_{axis}lim")(*limits)
 
     # --- the heading ---
@@ -225,6 +234,12 @@ def text_width(text: str, size: float, weight: str = "normal") -> float:
     return float(np.ptp(across)) if len(across) else 0.0
 
 
+def missing_letters(text: str) -> list[str]:
+    """The letters of a text that the font does not have: boxes stand in their place."""
+    font = get_font(findfont(FontProperties()))
+    return [letter for letter in dict.fromkeys(text) if not letter.isspace() and not font.get_char_index(ord(letter))]
+
+
 def plain(text: str) -> str:
     """Free text without mathematics: dollars as they are."""
     return text.replace("$", r"\$")
@@ -265,6 +280,13 @@ def fitted_legend(figure: Figure, entries: Sequence[Artist], room: float) -> tup
         if columns == 1 or box.width <= room * figure.dpi:
             break
         legend.remove()
+    if box.width > room * figure.dpi:
+        beside = box.width - max(text.get_window_extent().width for text in legend.get_texts())  # handles
+        font = {"size": mpl.rcParams["legend.fontsize"]}
+        for text in legend.get_texts():
+            words = wrapped(words_of(text.get_text()), " ", 72 * (room - beside / figure.dpi), font)
+            text.set_text("\n".join(words))
+        box = legend.get_window_extent()
     return legend, box.height / figure.dpi + 0.08
 
 
@@ -272,7 +294,7 @@ def fitted_legend(figure: Figure, entries: Sequence[Artist], room: float) -> tup
 
 
 def save(figure: Any, path: str | os.PathLike[str]) -> None:
-    """Writes a figure, or an animation, in the format that the suffix says: .png, .pdf, .svg; .gif, .mp4. A figure is
+    """Writes a figure, or an animation, in the format that the suffix says: .png, .pdf, .svg; .gif, .mp4. The file is
     there whole or not at all."""
     path = os.fspath(path)
     if not isinstance(figure, Figure):
@@ -281,10 +303,17 @@ def save(figure: Any, path: str | os.PathLike[str]) -> None:
         return
     suffix = os.path.splitext(path)[1].lower()
     undated = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}  # equal data give equal files
-    part = f"{path}.{os.getpid()}.part"
+    with whole(path) as part, settings():
+        figure.savefig(part, format=suffix[1:], metadata=undated.get(suffix))
+
+
+@contextlib.contextmanager
+def whole(path: str) -> Iterator[str]:
+    """A name with the same suffix, under which a file is written before it gets its own."""
+    stem, suffix = os.path.splitext(path)
+    part = f"{stem}.{os.getpid()}.part{suffix}"
     try:
-        with settings():
-            figure.savefig(part, format=suffix[1:], metadata=undated.get(suffix))
+        yield part
         os.replace(part, path)
     finally:
         with contextlib.suppress(FileNotFoundError):

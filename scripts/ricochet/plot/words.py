@@ -130,7 +130,23 @@ def parameter_symbol(result: Result, name: str) -> str:
 
 def assignment(result: Result, name: str, value: float, digits: int = 6) -> str:
     """ "gamma = 0.1" in mathematical letters."""
-    return f"{parameter_symbol(result, name)} $= {number(value, digits)}$".replace("$ $", " ")  # one formula, not two
+    return equation(parameter_symbol(result, name), number(value, digits))
+
+
+def equation(symbol: str, value: str) -> str:
+    """A symbol or words, and a value in mathematical text without dollars. Behind words the equals sign is a letter:
+    a formula that began with it would have no room behind it."""
+    return f"{symbol[:-1]} = {value}$" if symbol.endswith("$") else f"{symbol} = ${value}$"
+
+
+def followed(result: Result) -> str:
+    """The key of the parameter that a family is followed in."""
+    return str(result.parameters["branch.parameter"])
+
+
+def second(result: Result) -> str:
+    """The key of the second parameter of curves."""
+    return str(result.parameters["branch.trace.parameter"])
 
 
 def task_words(result: Result, task: int) -> list[str]:

@@ -14,7 +14,7 @@ from matplotlib.lines import Line2D
 from ricochet.plot import look, scale
 from ricochet.plot.branches import family
 from ricochet.plot.sheet import Sheet
-from ricochet.plot.words import assignment, number, parameter_label, parameter_symbol
+from ricochet.plot.words import assignment, equation, number, parameter_label, parameter_symbol
 from ricochet.result import Result
 from ricochet.sweep import Array
 
@@ -66,7 +66,7 @@ def _range(result: Result, name: str, values: Array) -> str:
         return assignment(result, name, float(values[0]))
     texts = [number(value, 6) for value in values.tolist()]
     listed = ",\\, ".join(texts) if len(texts) <= _FEW else rf"{texts[0]} \ldots {texts[-1]}"
-    return f"{parameter_symbol(result, name)} $= {listed}$".replace("$ $", " ")  # one formula, not two
+    return equation(parameter_symbol(result, name), listed)
 
 
 def _of_segments(result: Result, task: int) -> Colours:

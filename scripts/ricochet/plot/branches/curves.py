@@ -18,7 +18,7 @@ from ricochet.plot.branches.closed_form import grazing_form
 from ricochet.plot.branches.plane import marker, special_label
 from ricochet.plot.catalogue import figure
 from ricochet.plot.sheet import FigureError, Sheet
-from ricochet.plot.words import count, number, parameter_label, parameter_symbol, task_words
+from ricochet.plot.words import count, followed, number, parameter_label, parameter_symbol, second, task_words
 from ricochet.result import Result
 from ricochet.sweep import Array
 from ricochet.table import Table
@@ -45,8 +45,8 @@ def curves(result: Result, *, tasks: Sequence[int] | None = None, all: bool = Fa
     chosen = family.chosen_tasks(result, tasks)
     found = _drawable(result, [curve for task in chosen for curve in _curves(result, task)], all)
     sheet = Sheet(result, 8.6, 5.4)
-    axes = sheet.panel(xlabel=parameter_label(result, family.second(result)))
-    axes.set_ylabel(parameter_label(result, family.followed(result)))
+    axes = sheet.panel(xlabel=parameter_label(result, second(result)))
+    axes.set_ylabel(parameter_label(result, followed(result)))
     shades = _shades(sheet, chosen)
     for curve in found:
         _draw(axes, curve, shades[curve.task], all)
@@ -57,7 +57,7 @@ def curves(result: Result, *, tasks: Sequence[int] | None = None, all: bool = Fa
     if left and not all:
         sheet.note(f"{count(left, 'point')} of the curves, not admissible: not drawn; --all draws them")
     words = task_words(result, chosen[0]) if len(chosen) == 1 else []
-    return sheet.finish(varied=[family.followed(result), family.second(result)], words=words)
+    return sheet.finish(varied=[followed(result), second(result)], words=words)
 
 
 @dataclass
@@ -155,7 +155,7 @@ def _draw_forms(axes: Axes, result: Result, found: list[_Curve]) -> float | None
         form = grazing_form(result, curve.task)
         if form is None or curve.kind != "grazing" or curve.impacts:
             continue
-        is_across = family.second(result) == "model.frequency"  # the frequency is on the horizontal axis
+        is_across = second(result) == "model.frequency"  # the frequency is on the horizontal axis
         frequency, force = curve.points().T if is_across else curve.points().T[::-1]
         along = np.linspace(frequency.min(), frequency.max(), 1001)
         axes.plot(*((along, form(along)) if is_across else (form(along), along)), zorder=4, **_FORM)

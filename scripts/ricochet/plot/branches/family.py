@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 import numpy as np
 
 from ricochet.plot.sheet import FigureError
-from ricochet.plot.words import assignment, count, parameter_label, task_words, with_units
+from ricochet.plot.words import assignment, count, followed, parameter_label, task_words, with_units
 from ricochet.result import Result
 from ricochet.sweep import Array
 from ricochet.table import Table
@@ -29,16 +29,6 @@ _CHANGES = ("fold", "branch_point", "symmetry_breaking", "energy_extreme", "peri
 
 
 # --- results ---
-
-
-def followed(result: Result) -> str:
-    """The key of the parameter that is followed."""
-    return str(result["branch/point"].attributes("parameter")["parameter"])
-
-
-def second(result: Result) -> str:
-    """The key of the second parameter of curves."""
-    return str(result["branch/curve"].attributes("second")["parameter"])
 
 
 def is_modes(result: Result) -> bool:

@@ -14,8 +14,8 @@ from matplotlib.ticker import MaxNLocator
 from ricochet.plot import look, scale
 from ricochet.plot.branches import family
 from ricochet.plot.catalogue import CATALOGUE, figure
-from ricochet.plot.sheet import FigureError, Sheet
-from ricochet.plot.words import assignment, obstacles
+from ricochet.plot.sheet import FigureError, Sheet, expect_count
+from ricochet.plot.words import assignment, followed, obstacles
 from ricochet.result import Result
 from ricochet.sweep import Array
 
@@ -27,8 +27,8 @@ _SOFT: dict[str, Any] = {"linestyle": (0, (4, 1.6)), "linewidth": 1.6}
 def _unfit(result: Result) -> str:
     """Why the shapes of a branch cannot be compared; "" if they can."""
     reason = family.none_begins(result)
-    if not reason and family.followed(result) != _GAMMA:
-        reason = f"a branch along {family.followed(result)}, this figure needs one along {_GAMMA}"
+    if not reason and followed(result) != _GAMMA:
+        reason = f"a branch along {followed(result)}, this figure needs one along {_GAMMA}"
     return reason
 
 
@@ -48,6 +48,7 @@ def laws(result: Result, *, impacts: str = "", curves: int = 4) -> Figure:
     they are interpolated linearly."""
     if not impacts:
         raise FigureError(result.path, "figure laws needs a second result, of the chain with rigid floors: --impacts")
+    expect_count(result, "curves", curves)
     soft = _shapes(result)
     with Result(impacts) as other:
         hard = _rigid_shapes(other, soft.q.shape[1], result.path)
@@ -107,7 +108,7 @@ def _common(result: Result, soft: _Shapes, hard: _Shapes, impacts: str, curves: 
     low, high = max(soft.gamma[0], hard.gamma[0]), min(soft.gamma[-1], hard.gamma[-1])
     if not low < high:
         raise FigureError(result.path, f"no couplings in common with {impacts}")
-    return [float(gamma) for gamma in np.linspace(low, high, max(curves, 1))]
+    return [float(gamma) for gamma in np.linspace(low, high, curves)]
 
 
 def _draw_floors(sheet: Sheet, axes: Axes) -> None:

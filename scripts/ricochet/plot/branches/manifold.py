@@ -17,7 +17,7 @@ from ricochet.plot import look
 from ricochet.plot.branches import family
 from ricochet.plot.catalogue import figure
 from ricochet.plot.sheet import FigureError, Sheet, is_narrow
-from ricochet.plot.words import count, state_symbol
+from ricochet.plot.words import count, followed, state_symbol
 from ricochet.result import Result
 from ricochet.sweep import Array
 from ricochet.table import Table
@@ -71,7 +71,7 @@ def manifold(
         sheet.note(f"{count(left, 'point')} that {'is' if left == 1 else 'are'} not admissible{limit}: not drawn")
     name = family.task_name(result, task)
     about = "surface of the motions of a family" + (f": {name}" if name else "")
-    drawn = sheet.finish(about=about, varied=[family.followed(result)])
+    drawn = sheet.finish(about=about, varied=[followed(result)])
     _fit(drawn, axes, bar)
     return drawn
 
@@ -121,9 +121,11 @@ def _draw_bar(sheet: Sheet, norm: Normalize) -> Axes:
 
 def _fit(drawn: Figure, axes: Any, bar: Axes) -> None:
     """Zooms so that the labels of all axes lie inside the figure and beside the bar: matplotlib's layout does not know
-    labels in space."""
+    labels in space. It is made once, since it would move the axes after they were measured."""
     left, bottom, width, height = drawn.get_layout_engine().get()["rect"]
     room = Bbox.from_bounds(left, bottom, width, height).transformed(drawn.transFigure)
+    drawn.draw_without_rendering()
+    drawn.set_layout_engine("none")
     for zoom in _ZOOMS:
         axes.set_box_aspect(None, zoom=zoom)
         drawn.draw_without_rendering()

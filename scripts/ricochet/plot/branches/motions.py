@@ -16,7 +16,7 @@ from ricochet.plot import look, scale
 from ricochet.plot.branches import family
 from ricochet.plot.catalogue import figure
 from ricochet.plot.sheet import FigureError, Sheet, is_narrow
-from ricochet.plot.words import obstacles, state_symbol
+from ricochet.plot.words import assignment, followed, obstacles, state_symbol
 from ricochet.result import Result
 from ricochet.sweep import Array
 from ricochet.table import Table
@@ -24,6 +24,7 @@ from ricochet.table import Table
 _MOTIONS = 3  # that are drawn unless points are named
 _MOST_NAMES = 4  # of particles in the label of their obstacles
 _MOST_CURVES = 12  # particles that are drawn
+_DASHES = (0, (6, 3))
 _SQUEEZED = 0.12  # least part of a panel that a motion takes before an obstacle is left out
 
 
@@ -34,7 +35,7 @@ _SQUEEZED = 0.12  # least part of a panel that a motion takes before an obstacle
     reason=family.none_begins,
     options={
         "task": "which task, from 0; default: the first one with a motion",
-        "points": "which of its points, from 0; default: three admissible ones",
+        "points": "which of its points, from 0; default: admissible ones of least, middle and largest amplitude",
         "x": "component on the horizontal axis of the orbits, as q0 or v1; default: q0",
         "y": "component on the vertical axis; default: q1, of one particle v0",
     },
@@ -48,7 +49,7 @@ def motions(
     y: str | None = None,
 ) -> Figure:
     """Displacements over a period, and orbits in a plane, of some points of a task. Dots are the first states, where
-    motions with impacts hit; obstacles are hatched."""
+    motions with impacts hit. An obstacle that all particles share is hatched, others are dashed lines."""
     task = family.task_with_motions(result, task)
     table = result["branch/point"].task(task)
     rows = _chosen(result, table, points)
@@ -63,14 +64,15 @@ def motions(
     for note in drawing.notes:
         sheet.note(note)
     name = family.task_name(result, task)
-    return sheet.finish(about=f"motions: {name}" if name else "", varied=[family.followed(result)])
+    return sheet.finish(about=f"motions: {name}" if name else "", varied=[followed(result)])
 
 
 def _chosen(result: Result, table: Table, points: Sequence[int] | None) -> list[int]:
     """Rows of the points among those of the task."""
     if not points:
         sound = np.flatnonzero(family.is_sound(table))
-        return sorted({int(row) for row in sound[np.linspace(0, len(sound) - 1, _MOTIONS).astype(int)]})
+        rising = sound[np.argsort(table["amplitude"][sound], kind="stable")]
+        return list(dict.fromkeys(rising[np.linspace(0, len(rising) - 1, _MOTIONS).astype(int)].tolist()))
     for point in points:
         if not 0 <= point < len(table):
             raise FigureError(
@@ -138,12 +140,17 @@ class _Drawing:
             self._block(axes, axis, values, [int(name[1:])] if name[0] == "q" else [])
 
     def _name(self, row: int) -> str:
-        words = f"energy {self.table['energy'][row]:.4g}, period {self.table['period'][row]:.4g}"
+        words = [f"{name} {self.table[name][row]:.4g}" for name in ("energy", "period")]
+        parameter = followed(self.result)
+        if parameter not in ("orbit.energy", "orbit.period"):
+            words[0] = assignment(self.result, parameter, float(self.table["parameter"][row]), 4)
         outcome = self.table["outcome"][row]
-        return words if outcome == "admissible" else f"{words}, {'not admissible' if outcome != 'grazing' else outcome}"
+        if outcome != "admissible":
+            words.append("grazing" if outcome == "grazing" else "not admissible")
+        return ", ".join(words)
 
     def _block(self, axes: Axes, axis: str, values: Array, particles: Sequence[int] | Array) -> None:
-        """Limits of an axis, and the obstacles of some particles, hatched, unless they squeeze the motion."""
+        """Limits of an axis, and the obstacles of some particles, unless they squeeze the motion."""
         low, high = float(values.min()), float(values.max())
         places = [
             (side, place)
@@ -159,22 +166,30 @@ class _Drawing:
         bounds = scale.pad_limits(np.array([low, high, *(place for _, place in near)]), 0.08)
         getattr(axes, f"set_{axis}lim")(*bounds)
         for side, place in near:
-            self._hatch(axes, axis, side, place, bounds[0] if side == "floor" else bounds[1])
+            owners = [particle for particle in particles if self.obstacles[side][particle] == place]
+            if len(owners) == len(particles):
+                self._hatch(axes, axis, side, place, bounds[0] if side == "floor" else bounds[1])
+            else:
+                self._dash(axes, side, place, owners)
 
     def _hatch(self, axes: Axes, axis: str, side: str, place: float, end: float) -> None:
+        """An obstacle of all particles that the axis is of."""
         span, line = (axes.axhspan, axes.axhline) if axis == "y" else (axes.axvspan, axes.axvline)
         span(place, end, zorder=0.5, **look.OBSTACLE)
         line(place, color=look.INK, linewidth=1.0, zorder=1.5)
-        label = self._owners(side)
-        if label not in [entry.get_label() for entry in self.entries]:
-            self.entries.append(Patch(label=label, **look.OBSTACLE))
+        self._enter(Patch(label=side, **look.OBSTACLE))
 
-    def _owners(self, side: str) -> str:
-        """ "wall of q1": whose obstacles these are, unless all particles have them."""
-        owners = np.flatnonzero(np.isfinite(self.obstacles[side]))
-        if len(owners) == len(self.obstacles[side]) or len(owners) > _MOST_NAMES:
-            return side
-        return f"{side} of {', '.join(state_symbol(f'q{particle}') for particle in owners)}"
+    def _dash(self, axes: Axes, side: str, place: float, owners: Sequence[int]) -> None:
+        """An obstacle that others pass: in the colour of its particle, if it has one."""
+        colour = self.colours[list(self.particles).index(owners[0])] if len(owners) == 1 else look.INK
+        axes.axhline(place, color=colour, linewidth=1.0, linestyle=_DASHES, zorder=1.5)
+        names = ", ".join(state_symbol(f"q{particle}") for particle in owners)
+        whose = names if len(owners) <= _MOST_NAMES else f"{len(owners)} particles"
+        self._enter(Line2D([], [], color=colour, linewidth=1.0, linestyle=_DASHES, label=f"{side} of {whose}"))
+
+    def _enter(self, entry: Artist) -> None:
+        if entry.get_label() not in [other.get_label() for other in self.entries]:
+            self.entries.append(entry)
 
 
 _FIRST: dict[str, Any] = {"linestyle": "", "marker": "o", "color": look.RED, "markersize": 5}

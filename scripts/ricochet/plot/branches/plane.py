@@ -17,7 +17,7 @@ from ricochet.plot import look, scale
 from ricochet.plot.branches import colours, family, inset
 from ricochet.plot.branches.family import INADMISSIBLE
 from ricochet.plot.sheet import FigureError, Sheet
-from ricochet.plot.words import count
+from ricochet.plot.words import count, followed
 from ricochet.result import Result
 from ricochet.sweep import Array
 
@@ -38,6 +38,7 @@ _LABELS = {
 _BARE = ("|",)  # markers that are lines, and hide nothing
 _TEXT = 10.0  # size of the text for which those of markers are meant
 _NEAR = 1.5  # points, between markers that lie on one another
+_EQUAL = 1e-6  # of the extent of all, difference of special points that count as one
 _RING = 0.6  # by which a marker around another one is larger, over the size of its kind
 _SMALL = 0.6  # the size of markers in a place that an inset enlarges
 
@@ -66,6 +67,7 @@ class Plane:
 
     x, y     quantities
     at       places of the special points that are drawn [special, 2]; their kinds [special]
+    owners   task and segment of each [special, 2]
     hidden   how many are not drawn because of their kind
     """
 
@@ -78,6 +80,10 @@ class Plane:
         kept = [self._kept(segment, without) for segment in self.segments]
         self.at = np.concatenate([self._nodes(segment)[nodes] for segment, nodes in zip(self.segments, kept)])
         self.kinds = np.concatenate([segment.kinds[nodes] for segment, nodes in zip(self.segments, kept)])
+        owners = [
+            np.tile([segment.task, segment.number], (nodes.sum(), 1)) for segment, nodes in zip(self.segments, kept)
+        ]
+        self.owners = np.concatenate(owners)
         self.sound = np.concatenate([segment.sound[nodes] for segment, nodes in zip(self.segments, kept)])
         self.hidden = sum(int((np.isin(s.kinds, without) & (s.sound | all)).sum()) for s in self.segments)
 
@@ -153,7 +159,7 @@ class Plane:
         for note in filter(None, [self.left_out(), *notes]):
             sheet.note(note)
         words = colours.others(self.result, self.tasks, self.colours.shown)
-        return sheet.finish(varied=[family.followed(self.result)], words=words)
+        return sheet.finish(varied=[followed(self.result)], words=words)
 
     def _limit(self, sheet: Sheet, axes: Axes) -> None:
         """Limits of the panel, which stay. Solutions that are no motions may blow up."""
@@ -191,12 +197,23 @@ class Plane:
             for name, (text, dashes, width) in _LINES.items()
             if name in seen
         ]
-        counts = {kind: int((self.kinds == kind).sum()) for kind in self._drawn_kinds()}
+        new = ~self._returning()
+        counts = {kind: int((new & (self.kinds == kind)).sum()) for kind in self._drawn_kinds()}
         marks = [
             Line2D([], [], linestyle="", label=f"{special_label(kind)} ({number})", **marker(kind))
             for kind, number in counts.items()
         ]
         return lines + self.colours.entries + marks
+
+    def _returning(self) -> Array:
+        """Whether a special point is one of an earlier segment of its task, along which its own segment returns
+        [special]."""
+        returning = np.zeros(len(self.at), dtype=bool)
+        for k, (place, kind, (task, segment)) in enumerate(zip(self.at, self.kinds, self.owners)):
+            tasks, segments = self.owners[:k].T
+            earlier = self.at[:k][(self.kinds[:k] == kind) & (tasks == task) & (segments != segment)]
+            returning[k] = (np.abs(earlier - place) <= _EQUAL * np.ptp(self.at, axis=0)).all(axis=1).any()
+        return returning
 
     def left_out(self) -> str:
         """A note on the points that are not drawn; "" if all are."""

@@ -17,13 +17,12 @@ from ricochet.plot.grazings.points import (
     LATER_NEGATIVE,
     NEGATIVE,
     chosen_tasks,
-    followed,
     grazing_tasks,
     verdict_words,
     why_none,
 )
 from ricochet.plot.sheet import Sheet, is_narrow
-from ricochet.plot.words import assignment, complex_number, number, task_words
+from ricochet.plot.words import assignment, complex_number, followed, number, task_words
 from ricochet.result import Result
 from ricochet.sweep import Array
 

@@ -23,13 +23,12 @@ from ricochet.plot.grazings.points import (
     DISCONTINUOUS,
     VERDICTS,
     chosen_tasks,
-    followed,
     verdict_colour,
     verdict_label,
     why_none,
 )
 from ricochet.plot.sheet import FigureError, Sheet
-from ricochet.plot.words import number, parameter_label
+from ricochet.plot.words import followed, number, parameter_label, second
 from ricochet.result import Result
 from ricochet.sweep import Array
 from ricochet.table import Table
@@ -77,7 +76,7 @@ def grazing_curve(result: Result, *, tasks: Sequence[int] | None = None) -> Figu
         for way in _ways(curve):
             _draw_way(axes, way, seen)
         axes.plot(curve["second"][0], result["grazing"]["parameter"][task], zorder=5.5, **_mark("start"))
-    names = followed(result), str(result.parameters["branch.trace.parameter"])
+    names = followed(result), second(result)
     _frame(sheet, axes, result, names, np.concatenate([curve["parameter"] for curve in curves.values()]))
     if leaps:
         _draw_first(sheet.panel(1, sharex=axes), list(curves.values()))

@@ -18,9 +18,9 @@ from matplotlib.patches import Patch
 
 from ricochet.plot import look, scale
 from ricochet.plot.catalogue import figure
-from ricochet.plot.grazings.points import chosen_tasks, followed, grazing_tasks, regime_words, why_none
+from ricochet.plot.grazings.points import chosen_tasks, grazing_tasks, regime_words, why_none
 from ricochet.plot.sheet import FigureError, Sheet, is_narrow, words_of, wrapped
-from ricochet.plot.words import count, number, parameter_label, task_words
+from ricochet.plot.words import count, followed, number, parameter_label, task_words
 from ricochet.result import Result
 from ricochet.sweep import Array
 

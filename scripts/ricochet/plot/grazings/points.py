@@ -52,11 +52,6 @@ def chosen_tasks(result: Result, tasks: Sequence[int] | None, verdicts: Sequence
 # --- words ---
 
 
-def followed(result: Result) -> str:
-    """The parameter that the family was followed in."""
-    return str(result.parameters["branch.parameter"])
-
-
 def regime_words(regime: str) -> str:
     """What follows a continuous bifurcation as d tends to 0."""
     return _REGIMES.get(regime, regime)

@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
-from matplotlib.colors import LogNorm, Normalize
+from matplotlib.colors import ListedColormap, LogNorm, Normalize
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
@@ -17,7 +17,7 @@ from matplotlib.ticker import MaxNLocator
 from ricochet.plot import look, scale
 from ricochet.plot.catalogue import figure
 from ricochet.plot.orbits import outcomes
-from ricochet.plot.sheet import FigureError, Sheet
+from ricochet.plot.sheet import FigureError, Sheet, expect_count
 from ricochet.plot.words import count, obstacles, parameter_label
 from ricochet.result import Result
 from ricochet.sweep import Array
@@ -32,19 +32,19 @@ _HITS = (  # of the particles of the pattern
 
 @figure(
     "orbits",
-    shows="positions and velocities along the sweep, a curve for each orbit",
+    shows="positions and velocities of the particles, along a sweep a curve for each orbit",
     columns=("orbits/q", "orbits/v"),
-    swept=1,
+    reason=lambda result: _too_many(result),
     source="Example 1 of [JAP]",
     options={"all": "orbits that are not admissible, too", "curves": "at most so many curves, evenly picked"},
 )
 def modes(result: Result, *, all: bool = False, curves: int = 60) -> Figure:
     """Positions and velocities just after t = 0 against the particle, a curve for each orbit, its colour the parameter.
     Bands mark the particles that hit, hatching the floors."""
+    expect_count(result, "curves", curves)
     usable, left_out, missing = _usable(result, all)
     rows = _thinned(result, usable, curves)
-    name = result.swept[0]
-    at = result.sweep.values[name]
+    at = _parameter(result)
     sheet = Sheet(result, 8.6, 6.6, rows=2)
     upper = sheet.panel(0)
     panels = [upper, sheet.panel(1, sharex=upper)]
@@ -59,10 +59,20 @@ def modes(result: Result, *, all: bool = False, curves: int = 60) -> Figure:
     upper.tick_params(labelbottom=False)
     panels[1].axhline(0, color=look.FAINT, linewidth=0.6, zorder=1)
     panels[1].set_xlabel("particle")
-    panels[1].xaxis.set_major_locator(MaxNLocator(integer=True, nbins=12))
-    sheet.figure.colorbar(lines, ax=panels, label=parameter_label(result, name), aspect=40, pad=0.015)
+    panels[1].xaxis.set_major_locator(MaxNLocator(integer=True, nbins=12, min_n_ticks=1))
+    if result.swept:
+        sheet.figure.colorbar(lines, ax=panels, label=parameter_label(result, result.swept[0]), aspect=40, pad=0.015)
     _note_rest(sheet, len(rows), usable.sum(), left_out, missing)
     return sheet.finish()
+
+
+def _too_many(result: Result) -> str:
+    return f"{count(len(result.swept), 'swept parameter')}, this figure shows one at most" if result.swept[1:] else ""
+
+
+def _parameter(result: Result) -> Array:
+    """The swept parameter [tasks], 0 of a single orbit."""
+    return result.sweep.values[result.swept[0]] if result.swept else np.zeros(1)
 
 
 def _usable(result: Result, all: bool) -> tuple[Array, int, int]:
@@ -78,8 +88,8 @@ def _usable(result: Result, all: bool) -> tuple[Array, int, int]:
 def _thinned(result: Result, usable: Array, curves: int) -> Array:
     """At most so many tasks, evenly picked, in the order of the parameter."""
     rows = np.flatnonzero(usable)
-    rows = rows[np.argsort(result.sweep.values[result.swept[0]][rows], kind="stable")]
-    picked = np.linspace(0, len(rows) - 1, min(len(rows), max(curves, 1)))
+    rows = rows[np.argsort(_parameter(result)[rows], kind="stable")]
+    picked = np.linspace(0, len(rows) - 1, min(len(rows), curves))
     return np.asarray(rows[np.unique(picked.round().astype(int))])
 
 
@@ -100,7 +110,7 @@ def _norm(at: Array) -> Normalize:
 def _draw_curves(axes: Axes, states: Array, at: Array, norm: Normalize) -> LineCollection:
     count = states.shape[1]
     particles = np.arange(count)
-    colours = {"cmap": look.colour_map(), "norm": norm}
+    colours = {"cmap": look.colour_map() if len(np.unique(at)) > 1 else ListedColormap([look.BLUE]), "norm": norm}
     segments = [np.column_stack([particles, row]) for row in states]
     lines = LineCollection(segments, linewidths=1.0, alpha=0.9, zorder=2, **colours)
     lines.set_array(at)

@@ -60,8 +60,10 @@ def multipliers(result: Result, *, task: int | None = None) -> Figure:
     if panels:
         sheet.legend(_draw_sweep(panels, result, chosen))
     number = [f"task {chosen}"] if result.sweep.tasks > 1 else []
-    verdict = result["orbits"]["stable"][chosen]
-    return sheet.finish(words=[*outcomes.pattern(result), *task_words(result, chosen), *number, verdict])
+    verdict = [str(result["orbits"]["stable"][chosen])] + [outcomes.NOT_ADMISSIBLE] * (
+        not outcomes.sound(result)[chosen]
+    )
+    return sheet.finish(words=[*outcomes.pattern(result), *task_words(result, chosen), *number, *verdict])
 
 
 def _known(result: Result) -> Array:

@@ -12,7 +12,7 @@ from matplotlib.ticker import MaxNLocator
 
 from ricochet.plot import look, scale
 from ricochet.plot.catalogue import figure
-from ricochet.plot.sheet import FigureError, Sheet, is_narrow
+from ricochet.plot.sheet import Sheet, expect_count, is_narrow
 from ricochet.plot.trajectories.film import Film
 from ricochet.plot.trajectories.motion import LABEL, OPTIONS, UPWARDS, Motion
 from ricochet.plot.words import number
@@ -52,8 +52,8 @@ def animation(
     fps: int = 20,
 ) -> Film:
     """Between samples particles move on straight lines. It shows the whole motion; `start` and `end` pick a part."""
-    _check(result, "frames", frames, _MOST_ASKED)
-    _check(result, "fps", fps, _MOST_FPS)
+    expect_count(result, "frames", frames, _MOST_ASKED)
+    expect_count(result, "fps", fps, _MOST_FPS)
     motion = Motion(result, task, start, end)
     count = frames or _count(motion)
     times = np.linspace(motion.t[0], motion.t[-1], count)
@@ -69,11 +69,6 @@ def animation(
     drawn.draw_without_rendering()
     drawn.set_layout_engine("none")  # laid out once for all pictures
     return Film(drawn, stage.show, count, fps, 200 if is_narrow() else 100, result.path)
-
-
-def _check(result: Result, name: str, value: int | None, most: int) -> None:
-    if value is not None and not 1 <= value <= most:
-        raise FigureError(result.path, f"{name} = {value}, expected 1 to {most}")
 
 
 def _count(motion: Motion) -> int:

@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 from ricochet.plot import look
-from ricochet.plot.sheet import FigureError, settings
+from ricochet.plot.sheet import FigureError, settings, whole
 from ricochet.sweep import Array
 
 _TINTS = 6  # of each colour, towards white: what smooth edges need
@@ -50,21 +50,24 @@ class Film:
     def save(self, path: str | os.PathLike[str]) -> None:
         """Writes a .gif, or an .mp4 where the program ffmpeg is there."""
         path = os.fspath(path)
-        write = {".gif": self._write_gif, ".mp4": self._write_mp4}.get(os.path.splitext(path)[1])
+        suffix = os.path.splitext(path)[1].lower()
+        write = {".gif": self._write_gif, ".mp4": self._write_mp4}.get(suffix)
         if write is None:
             raise FigureError(self.source, f"an animation is written as .gif or .mp4, not as {path}")
-        with settings():
-            write(path)
-
-    def _write_mp4(self, path: str) -> None:
-        if not animation.FFMpegWriter.isAvailable():
+        if suffix == ".mp4" and not animation.FFMpegWriter.isAvailable():
             raise FigureError(
                 self.source, f"{path} needs the program ffmpeg, which is not there; a .gif does without it"
             )
+        with whole(path) as part, settings():
+            write(part)
+
+    def _write_mp4(self, path: str) -> None:
         try:
             self.animation.save(path, writer=animation.FFMpegWriter(fps=self.fps), dpi=self.dpi)
         except subprocess.CalledProcessError as trouble:
-            raise FigureError(self.source, f"ffmpeg did not write {path}: exit code {trouble.returncode}") from trouble
+            raise FigureError(
+                self.source, f"ffmpeg did not write the animation: exit code {trouble.returncode}"
+            ) from trouble
 
     def _write_gif(self, path: str) -> None:
         with open(path, "wb") as file:

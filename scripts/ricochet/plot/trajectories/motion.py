@@ -148,10 +148,11 @@ class Motion:
         return [*found, self.count_of_hits()]
 
     def notes(self) -> list[str]:
-        """Why a run ended early."""
-        if self.stopped is None:
-            return []
-        return [f"{self.outcome.replace('_', ' ')}: {self.reason}".rstrip(": ")]
+        """Why a run ended early, and whether there are samples enough."""
+        ended = [] if self.stopped is None else [f"{self.outcome.replace('_', ' ')}: {self.reason}".rstrip(": ")]
+        if is_sampled(self.result):
+            return ended
+        return [*ended, f"{len(self.t)} samples only (time.samples): the motion between them is not drawn"]
 
     def count_of_hits(self, particle: int | None = None) -> str:
         """How many impacts, and contacts with compliant obstacles, there were: "3 impacts", "no impact"."""
