@@ -2,6 +2,7 @@
 
 import csv
 import io
+import os
 import re
 
 import h5py
@@ -586,3 +587,17 @@ def test_turning_the_ring_turns_the_orbit(ricochet, folder):
         for name in ("q", "v"):
             assert np.allclose(np.roll(a["orbits"][name][()], 4 - 15, axis=1), b["orbits"][name][()], atol=1e-12), name
         assert np.allclose(a["orbits/energy"][()], b["orbits/energy"][()], rtol=1e-13)
+
+
+# --- memory ---
+
+
+def test_an_old_result_is_not_read_before_it_is_replaced(ricochet, folder):
+    """One of 1 GB, most of it a hole."""
+    write(folder, "s.yaml", study(at_start="[15]", sweep=sweep(20)))
+    with (folder / "s.h5").open("wb") as old:
+        old.truncate(1 << 30)
+    process = ricochet.start_run("s.yaml", "--force", cwd=folder)
+    _, status, usage = os.wait4(process.pid, 0)
+    process.returncode = os.waitstatus_to_exitcode(status)
+    assert process.returncode == 0 and usage.ru_maxrss < 500_000, usage
