@@ -4,6 +4,7 @@
 #include <fftw3.h>
 #include <limits.h>
 #include <math.h>
+#include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -74,6 +75,10 @@ void lattice_transform_free(double *x) {
   fftw_free(x);
 }
 
+/* FFTW's planner keeps what it has learned for all plans of the process, unguarded: one thread plans at a time. Plans
+ * are used without it. */
+static pthread_mutex_t planner = PTHREAD_MUTEX_INITIALIZER;
+
 static void make_plans(lattice_transform *t, const ric_chain *chain, double *x) {
   int n = (int)chain->particles;
   fftw_r2r_kind there = FFTW_R2HC, back = FFTW_HC2R;
@@ -83,18 +88,22 @@ static void make_plans(lattice_transform *t, const ric_chain *chain, double *x) 
     there = FFTW_REDFT10;
     back = FFTW_REDFT01;
   }
+  pthread_mutex_lock(&planner);
   t->forward = fftw_plan_r2r_1d(n, x, x, there, FFTW_ESTIMATE);
   t->inverse = fftw_plan_r2r_1d(n, x, x, back, FFTW_ESTIMATE);
   if (chain->ends != RIC_ENDS_PERIODIC)
     t->kernel = fftw_plan_r2r_1d((int)(t->sites / 2 + 1), x, x, FFTW_REDFT00, FFTW_ESTIMATE);
+  pthread_mutex_unlock(&planner);
 }
 
 void lattice_transform_destroy(lattice_transform **t) {
   if (!t || !*t)
     return;
+  pthread_mutex_lock(&planner);
   fftw_destroy_plan((*t)->forward);
   fftw_destroy_plan((*t)->inverse);
   fftw_destroy_plan((*t)->kernel);
+  pthread_mutex_unlock(&planner);
   free(*t);
   *t = NULL;
 }
