@@ -1,10 +1,11 @@
 /* Objects of the library in several threads, one of each per thread: the scenarios of the benchmarks, which build all
- * they use, run side by side, each thread in another order. A scenario that does not give what it promises, a crash and,
- * with ThreadSanitizer, a race is a failure.
+ * they use, run side by side, each thread in another order. A scenario that does not give what it promises, a crash
+ * and, with ThreadSanitizer, a race is a failure.
  *
- * usage: stress THREADS [SCENARIO ...]   by default the scenarios below, which take less than a second together */
+ * usage: stress THREADS [SCENARIO ...]   by default the scenarios below, which take some two seconds */
 #include <pthread.h>
 #include <stdatomic.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -25,6 +26,30 @@ double bench_seconds(void) {
 }
 
 /* --- which scenarios --- */
+
+static const char *const usual[] = {"table",
+                                    "table_dense",
+                                    "fixed_prime",
+                                    "motion_30",
+                                    "motion_3000",
+                                    "driven_taylor",
+                                    "driven_cvodes",
+                                    "variational_30",
+                                    "multipliers_table",
+                                    "verdict_10000",
+                                    "verdict_unstable",
+                                    "continuation_small",
+                                    "family_hertz",
+                                    "family_hertz_multipliers",
+                                    "family_cubic",
+                                    "family_cubic_multipliers",
+                                    "orbit_small",
+                                    "diagram_one",
+                                    "diagram_eight",
+                                    "diagram_exponents",
+                                    "period_map_at_rest",
+                                    "section_strobe",
+                                    "section_strobe_exponents"};
 
 static const benchmark *chosen[MOST_SCENARIOS];
 static size_t count;
@@ -68,15 +93,13 @@ static void *run_all(void *user) {
 }
 
 int main(int argc, char **argv) {
-  static const char *const usual[] = {USUAL};
   const long threads = argc > 1 ? strtol(argv[1], NULL, 10) : 4;
   pthread_t running[MOST_THREADS];
   if (threads < 1 || threads > MOST_THREADS) {
     fprintf(stderr, "stress: %s threads, expected 1 to %d\n", argv[1], MOST_THREADS);
     return 2;
   }
-  if (argc > 2 ? choose((const char *const *)argv + 2, (size_t)argc - 2)
-               : choose(usual, sizeof usual / sizeof *usual))
+  if (argc > 2 ? choose((const char *const *)argv + 2, (size_t)argc - 2) : choose(usual, sizeof usual / sizeof *usual))
     return 2;
   for (long i = 0; i < threads; i++)
     if (pthread_create(&running[i], NULL, run_all, (void *)(uintptr_t)i) != 0)
