@@ -14,3 +14,11 @@ endif()
 set(RICOCHET_PYTHON_DIR "lib/${place}" CACHE STRING "Folder of the Python package, below the prefix")
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/scripts/ricochet DESTINATION ${RICOCHET_PYTHON_DIR}
   FILES_MATCHING PATTERN "*.py" PATTERN "py.typed" PATTERN "__pycache__" EXCLUDE)
+set(python_command "/usr/bin/env python3")
+if(RICOCHET_PYTHON)
+  set(python_command ${RICOCHET_PYTHON})
+endif()
+# The command finds the package wherever the prefix is moved to.
+file(RELATIVE_PATH python_from_bin /prefix/${CMAKE_INSTALL_BINDIR} /prefix/${RICOCHET_PYTHON_DIR})
+configure_file(${PROJECT_SOURCE_DIR}/cmake/ricochet-plot.in ${PROJECT_BINARY_DIR}/ricochet-plot @ONLY)
+install(PROGRAMS ${PROJECT_BINARY_DIR}/ricochet-plot DESTINATION ${CMAKE_INSTALL_BINDIR})

@@ -1,4 +1,4 @@
-"""Fixtures of the tests of figures: the scripts, and folders for the results that they draw."""
+"""Fixtures of the tests of figures: pictures of the results that a file names in STUDIES and MADE."""
 
 import sys
 import tempfile
@@ -6,19 +6,25 @@ from pathlib import Path
 
 import pytest
 
-sys.path.insert(0, str(Path(__file__).resolve().parent))
-pytest.register_assert_rewrite("drawing")
+HERE = Path(__file__).resolve().parent
+sys.path[:0] = [str(HERE.parent.parent / "scripts"), str(HERE)]
+pytest.register_assert_rewrite("album")
 
-from drawing import Scripts  # noqa: E402  # behind the path to it
-
-
-@pytest.fixture
-def scripts(source, capfd):
-    return Scripts(source / "scripts", capfd)
+from album import Album  # noqa: E402  # behind the path to it
+from shelf import Shelf, computed  # noqa: E402
 
 
 @pytest.fixture(scope="module")
-def shared():
-    """A folder that lasts as long as the tests of a file."""
+def results(ricochet, request):
+    """The results of the studies of a file, STUDIES, and those that it makes by hand, MADE."""
+    module = request.module
     with tempfile.TemporaryDirectory(prefix="ricochet-") as path:
-        yield Path(path)
+        yield Shelf(Path(path), computed(ricochet, module.STUDIES) | getattr(module, "MADE", {}))
+
+
+@pytest.fixture(scope="module")
+def picture(results):
+    """`picture("modes", "family", all=True)`: a picture of a result, drawn once."""
+    album = Album(results)
+    yield album
+    album.close()

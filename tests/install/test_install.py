@@ -82,9 +82,16 @@ def test_the_python_package_is_installed_without_its_byte_code(prefix, folder, s
     installed = next(prefix.rglob("ricochet/__init__.py")).parent
     version, file = import_from(installed.parent, folder)
     assert file == str(installed / "__init__.py")
-    shipped = {p.name for p in (source / "scripts" / "ricochet").iterdir() if p.suffix in (".py", ".typed")}
-    assert {p.name for p in installed.iterdir()} == shipped
+    package = source / "scripts" / "ricochet"
+    shipped = {p.relative_to(package) for ending in ("*.py", "*.typed") for p in package.rglob(ending)}
+    assert {p.relative_to(installed) for p in installed.rglob("*") if p.is_file()} == shipped
     assert output_of(prefix / "bin" / "ricochet", "--version").split()[1].startswith(version)
+
+
+def test_the_command_for_figures_finds_its_package(prefix, folder):
+    output_of(prefix / "bin" / "ricochet", "run", prefix / "share" / "ricochet" / "studies" / "table.yaml", cwd=folder)
+    assert output_of(prefix / "bin" / "ricochet-plot", "table.h5", "modes", cwd=folder) == "table_modes.png\n"
+    assert (folder / "table_modes.png").stat().st_size > 10000
 
 
 def test_python_of_the_system_finds_the_package_under_usr_local(prefix):
@@ -104,3 +111,6 @@ def test_pip_installs_the_package_from_the_checkout(source, folder):
     assert file == str(folder / "target" / "ricochet" / "__init__.py")
     assert (folder / "target" / f"ricochet-{version}.dist-info").is_dir()
     assert (folder / "target" / "ricochet" / "py.typed").exists()
+    command = folder / "target" / "bin" / "ricochet-plot"
+    env = {"PYTHONPATH": str(folder / "target")}
+    assert "modes" in output_of("/usr/bin/python3", "-B", command, "--list", cwd=folder, env=env)
