@@ -10,7 +10,7 @@
 #include <gsl/gsl_roots.h>
 
 #include "cycle_equations.h"
-#include "../numeric/gsl_quiet.h"
+#include "numeric/gsl_quiet.h"
 
 enum { MOST_STEPS = 100000, MOST_TRIALS = 200 };
 

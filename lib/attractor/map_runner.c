@@ -10,7 +10,7 @@
 #include "map_simd.h"
 #include "numeric/linear.h"
 #include "numeric/number_block.h"
-#include "../numeric/gsl_quiet.h"
+#include "numeric/gsl_quiet.h"
 
 enum {
   PIECE_LENGTH = 16,    /* iterates at a time: their states stay in the cache */

@@ -7,7 +7,7 @@
 #include <gsl/gsl_linalg.h>
 
 #include "curve.h"
-#include "../numeric/gsl_quiet.h"
+#include "numeric/gsl_quiet.h"
 
 /* From this size on LU with row pivoting: 9 times as quick as QR at 1000, twice at 30, since GSL does it in blocks. It
  * allocates its pivots in every call, a cost that small problems avoid. */

@@ -1,6 +1,6 @@
 /* Points of a curve, products of their vectors, and the workspace of a continuation. */
 #include "curve.h"
-#include "../numeric/gsl_quiet.h"
+#include "numeric/gsl_quiet.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -6,7 +6,7 @@
 
 #include "corrector.h"
 #include "step.h"
-#include "../numeric/gsl_quiet.h"
+#include "numeric/gsl_quiet.h"
 
 /* Special points closer to a start with a given tangent, relative to the first step, are the start itself: a branch
  * point or a fold, accurate to rounding only. */

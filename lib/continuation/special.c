@@ -10,7 +10,7 @@
 
 #include "corrector.h"
 #include "step.h"
-#include "../numeric/gsl_quiet.h"
+#include "numeric/gsl_quiet.h"
 
 /* The bracket is bisected by corrected points to this fraction of the step. There the cubic through its ends replaces
  * the curve: a step turns by less than 1, so the error is at most about (1/256)^4 / 384 = 6e-13 of the radius of

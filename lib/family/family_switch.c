@@ -7,7 +7,7 @@
 #include <gsl/gsl_linalg.h>
 
 #include "family.h"
-#include "../numeric/gsl_quiet.h"
+#include "numeric/gsl_quiet.h"
 
 /* Families that meet: what all switches share. */
 

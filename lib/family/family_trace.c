@@ -11,7 +11,7 @@
 #include <gsl/gsl_linalg.h>
 
 #include "family.h"
-#include "../numeric/gsl_quiet.h"
+#include "numeric/gsl_quiet.h"
 
 /* Step of differences of psi, relative to 1 + the size of the variable. */
 static const double psi_step = 1e-5;

@@ -2,10 +2,9 @@
 #include <math.h>
 #include <stdlib.h>
 
-
 #include "orbit_multipliers.h"
 #include "ricochet/orbit_multipliers.h"
-#include "../numeric/gsl_quiet.h"
+#include "numeric/gsl_quiet.h"
 
 /* Rounding of alpha, relative to the largest entry of the reduced matrix: ten times the observed value; its root for
  * the imaginary part of two that collide. */

@@ -5,10 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-
 #include "impact/trajectory.h"
 #include "model/system_model.h"
-#include "../numeric/gsl_quiet.h"
+#include "numeric/gsl_quiet.h"
 
 ric_lyapunov_options ric_lyapunov_options_default(void) {
   return (ric_lyapunov_options){.interval = 1};

@@ -1,7 +1,6 @@
 /* Multipliers of a matrix, by GSL, and of an even motion, by its block; the verdict. */
 #include "multipliers.h"
 
-#include <complex.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdint.h>
@@ -13,7 +12,8 @@
 #include <gsl/gsl_linalg.h>
 
 #include "ricochet/multipliers.h"
-#include "../numeric/gsl_quiet.h"
+#include "numeric/gsl_quiet.h"
+#include "numeric/complex_number.h"
 
 /* A pair (mu, 1/mu) of multipliers and its representative alpha = (mu + 1/mu) / 2. */
 

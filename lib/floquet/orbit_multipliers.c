@@ -4,12 +4,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-
 #include "determinant.h"
 #include "multipliers.h"
 #include "orbit_multipliers.h"
 #include "ricochet/monodromy.h"
-#include "../numeric/gsl_quiet.h"
+#include "numeric/gsl_quiet.h"
 
 ric_orbit_multiplier_options ric_orbit_multiplier_options_default(void) {
   return (ric_orbit_multiplier_options){.method = RIC_MULTIPLIERS_AUTO, .judge = ric_multiplier_options_default()};

@@ -13,7 +13,7 @@
 #include "numeric/linear.h"
 #include "numeric/number_block.h"
 #include "ricochet/grazing_criterion.h"
-#include "../numeric/gsl_quiet.h"
+#include "numeric/gsl_quiet.h"
 
 /* The proof that all coefficients from some index on have the sign of alpha.
  *

@@ -12,7 +12,7 @@
 #include "numeric/constants.h"
 #include "one_impact.h"
 #include "ricochet/grazing_map.h"
-#include "../numeric/gsl_quiet.h"
+#include "numeric/gsl_quiet.h"
 
 /* Where pairs of complex multipliers of one-impact orbits lie on the unit circle.
  *

@@ -11,7 +11,7 @@
 #include <gsl/gsl_poly.h>
 
 #include "ricochet/grazing_map.h"
-#include "../numeric/gsl_quiet.h"
+#include "numeric/gsl_quiet.h"
 
 /* Largest period of the closed forms: rounding errors accumulate, and d decreases by lambda^2 with each period. */
 enum { MOST_PERIOD = 10000 };

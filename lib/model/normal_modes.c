@@ -15,7 +15,7 @@
 #include "numeric/vector.h"
 #include "numeric/linear.h"
 #include "ricochet/normal_modes.h"
-#include "../numeric/gsl_quiet.h"
+#include "numeric/gsl_quiet.h"
 
 /* Entries of K that differ by less, relative to the largest, differ by rounding. */
 static const double symmetry_tol = 1e-12;

@@ -7,7 +7,7 @@
 #include <gsl/gsl_roots.h>
 
 #include "solver.h"
-#include "../numeric/gsl_quiet.h"
+#include "numeric/gsl_quiet.h"
 
 enum { MOST_RESONANCES = 100000 };
 

@@ -17,7 +17,7 @@
 #include "ricochet/orbit.h"
 #include "unit_cell.h"
 #include "admissibility.h"
-#include "../numeric/gsl_quiet.h"
+#include "numeric/gsl_quiet.h"
 
 ric_orbit_options ric_orbit_options_default(void) {
   return (ric_orbit_options){.method = RIC_METHOD_IMPULSE,

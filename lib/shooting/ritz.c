@@ -14,7 +14,7 @@
 #include "numeric/newton.h"
 #include "numeric/number_block.h"
 #include "ricochet/ritz.h"
-#include "../numeric/gsl_quiet.h"
+#include "numeric/gsl_quiet.h"
 
 /* The approximated motion at any time, and its residual in the equations of motion. */
 

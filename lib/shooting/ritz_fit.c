@@ -7,7 +7,7 @@
 
 #include "numeric/constants.h"
 #include "ritz.h"
-#include "../numeric/gsl_quiet.h"
+#include "numeric/gsl_quiet.h"
 
 /* Fits omit functions that are linear combinations of others, up to this part of the first one. */
 static const double rank_tol = 1e-12;

@@ -7,7 +7,7 @@
 
 #include "floquet/multipliers.h"
 #include "shooting.h"
-#include "../numeric/gsl_quiet.h"
+#include "numeric/gsl_quiet.h"
 
 /* Derivatives of the state of a motion between two of its times. */
 
