@@ -103,7 +103,7 @@ static int write_block(const block *b, const row_file *f, uint64_t first_set, ui
 
 int rows_write(const plan *p, const chunk_places *places, const file_place *at, records *written, int rank, int ranks) {
   uint64_t set = 0;
-  const row_file f = {places, written, open(p->partial, O_WRONLY | O_CLOEXEC)};
+  const row_file f = {places, written, open(p->partial, O_WRONLY | O_NOFOLLOW | O_CLOEXEC)};
   if (f.handle < 0)
     return refuse_errno(at->path, "open it", at->why);
   int code = 0;

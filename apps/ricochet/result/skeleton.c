@@ -349,7 +349,7 @@ static int reserve(int handle, uint64_t bytes) {
 }
 
 static int write_image(const plan *p, const file_place *at, const skeleton_image *image) {
-  int handle = open(p->partial, O_RDWR | O_CREAT | O_TRUNC, 0666);
+  int handle = open(p->partial, O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
   if (handle < 0)
     return refuse(at->why, EXIT_FILES, "%s: cannot create it: %s", at->path, strerror(errno));
   uint64_t total = image->size + plan_bytes(p);

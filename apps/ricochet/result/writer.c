@@ -7,8 +7,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "result.h"
+#include "../base/file_kind.h"
 #include "../run/ranks.h"
+#include "result.h"
 #include "hdf5_call.h"
 #include "chunks.h"
 #include "plan.h"
@@ -16,18 +17,42 @@
 #include "skeleton.h"
 #include "verify.h"
 
+/* The beginning of an HDF5 file, or of nothing. */
+static bool is_partial(const char *path) {
+  static const unsigned char signature[8] = {0x89, 'H', 'D', 'F', '\r', '\n', 0x1a, '\n'};
+  unsigned char lead[sizeof signature];
+  const int handle = open(path, O_RDONLY | O_NOFOLLOW | O_CLOEXEC);
+  const ssize_t size = handle < 0 ? -1 : pread(handle, lead, sizeof lead, 0);
+  if (handle >= 0)
+    close(handle);
+  return size == 0 || (size > 0 && memcmp(lead, signature, (size_t)size) == 0);
+}
+
+int result_check_partial(const char *path, message *why) {
+  char partial[4100];
+  snprintf(partial, sizeof partial, "%s.tmp", path);
+  int code = file_kind_expect(partial, FILE_REGULAR, why);
+  if (!code && file_kind_of(partial) == FILE_REGULAR && !is_partial(partial))
+    code = refuse(why, EXIT_USAGE,
+                  "%s: is there and no part of a result, which is written under this name; rename it, or "
+                  "use -o for another result",
+                  partial);
+  return code;
+}
+
 typedef struct writer {
   plan plan;
   file_place at;
   chunk_places places;
   records written; /* digests of what this rank wrote */
+  bool made;       /* the file, by rank 0 */
 } writer;
 
 /* Collective: each rank checks that it can open the file that rank 0 made. */
 static int check_shared_file(const writer *w) {
   struct stat mine;
   long long size = -1;
-  int handle = open(w->plan.partial, O_RDWR);
+  int handle = open(w->plan.partial, O_RDWR | O_NOFOLLOW | O_CLOEXEC);
   int failed = handle < 0 || fstat(handle, &mine) != 0 ? errno : 0;
   if (handle >= 0)
     close(handle); /* nothing was written through it */
@@ -78,6 +103,17 @@ static int publish(const writer *w, int (*commit)(void *user, message *why), voi
   return code ? code : sync_folder(w);
 }
 
+/* Rank 0: in place of what a killed run left. */
+static int make_file(writer *w) {
+  int code = result_check_partial(w->at.path, w->at.why);
+  if (!code && unlink(w->plan.partial) != 0 && errno != ENOENT)
+    code = refuse_errno(w->plan.partial, "replace it", w->at.why);
+  if (code)
+    return code;
+  w->made = true;
+  return space_create(&w->plan, &w->at, &w->places);
+}
+
 int result_write(const char *path, const result_header *header, const result_table *tables, size_t table_count,
                  int (*commit)(void *user, message *why), void *user, message *why) {
   writer w = {.at = {path, why}};
@@ -85,7 +121,7 @@ int result_write(const char *path, const result_header *header, const result_tab
   hdf5_quiet();
   int code = ranks_agree(plan_init(&w.plan, path, header, tables, table_count, why), why);
   if (!code)
-    code = ranks_agree(rank == 0 ? space_create(&w.plan, &w.at, &w.places) : 0, why);
+    code = ranks_agree(rank == 0 ? make_file(&w) : 0, why);
   if (!code)
     code = chunks_share(&w.places, &w.at);
   if (!code)
@@ -98,8 +134,8 @@ int result_write(const char *path, const result_header *header, const result_tab
     code = ranks_agree(rank == 0 ? verify_file(&w.at, w.plan.partial, &w.plan) : 0, why);
   if (!code)
     code = ranks_agree(rank == 0 ? publish(&w, commit, user) : 0, why);
-  if (code && rank == 0 && w.plan.partial)
-    unlink(w.plan.partial); /* absent if it was not yet created */
+  if (code && w.made)
+    unlink(w.plan.partial); /* absent if it could not be created */
   chunks_clear(&w.places);
   records_clear(&w.written);
   plan_clear(&w.plan);
