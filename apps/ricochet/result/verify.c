@@ -260,10 +260,10 @@ static int check_storage(const verifier *v, const char *name, slabs *s) {
   HDF5_TRY(v->at, H5Pget_chunk(list, s->rank, chunk), "read the chunks of %s", name);
   HDF5_TRY(v->at, H5Pget_filter_by_id2(list, H5Z_FILTER_FLETCHER32, &flags, &values, NULL, 0, NULL, NULL),
            "find the checksum of %s", name);
-  s->height = chunk[0];
+  s->height = chunk[0] < s->shape[0] ? chunk[0] : s->shape[0];
   s->row_bytes = H5Tget_size(s->type);
   for (int i = 1; i < s->rank; i++)
-    s->row_bytes *= s->shape[i];
+    s->row_bytes *= s->shape[i]; /* cannot overflow: the extent was checked */
 out:
   return hdf5_close(v->at, list, code);
 }
@@ -297,11 +297,16 @@ out:
 static int check_set(const verifier *v, const char *name) {
   int code = 0;
   slabs s = {.set = H5I_INVALID_HID, .type = H5I_INVALID_HID, .space = H5I_INVALID_HID};
+  uint64_t shape[H5S_MAX_RANK];
   HDF5_TRY(v->at, s.set = H5Dopen2(v->file, name, H5P_DEFAULT), "open %s", name);
   HDF5_TRY(v->at, s.type = H5Dget_type(s.set), "read %s", name);
   HDF5_TRY(v->at, s.space = H5Dget_space(s.set), "read %s", name);
   HDF5_TRY(v->at, s.rank = H5Sget_simple_extent_dims(s.space, s.shape, NULL), "read %s", name);
-  code = check_storage(v, name, &s);
+  for (int i = 0; i < s.rank; i++)
+    shape[i] = s.shape[i];
+  code = reader_check_extent(v->at, s.set, name, s.rank, shape, H5Tget_size(s.type));
+  if (!code)
+    code = check_storage(v, name, &s);
   if (!code)
     code = check_axes(v, name, &s);
   if (!code && (v->with_rows || !strchr(name, '/')))
