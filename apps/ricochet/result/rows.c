@@ -72,7 +72,7 @@ static void unpack(const block *b, const column *c, uint64_t count) {
 }
 
 static int remember(const block *b, records *written, const column *c, uint64_t count) {
-  const uint64_t digest = digest_bytes(0, b->values, count * column_bytes(c));
+  const uint64_t digest = digest_words(b->values, count * column_bytes(c));
   unsigned char *added = records_add(written);
   if (!added)
     return refuse(b->at->why, EXIT_RUN, "%s: out of memory", b->at->path);
@@ -147,7 +147,7 @@ out:
 static int check_column(const block *b, hid_t set, const column *c, uint64_t first, uint64_t digest) {
   const uint64_t count = rows_from(b, first);
   int code = read_column(b, set, c, first, count);
-  if (!code && digest_bytes(0, b->values, count * column_bytes(c)) != digest)
+  if (!code && digest_words(b->values, count * column_bytes(c)) != digest)
     code = refuse(b->at->why, EXIT_FILES, "%s: /%s/%s does not hold what was written, from row %llu on", b->at->path,
                   b->from->layout->group, c->name, (unsigned long long)first);
   return code;
