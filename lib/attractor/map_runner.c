@@ -5,7 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-
 #include "attractor.h"
 #include "map_simd.h"
 #include "numeric/linear.h"

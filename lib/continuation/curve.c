@@ -6,7 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-
 /* Points of a curve, and the products of their vectors. */
 
 /** <a, b> = a_u . b_u / n + a_p b_p of vectors [n + 1]. */

@@ -3,7 +3,6 @@
 #include <stdio.h>
 #include <string.h>
 
-
 #include "corrector.h"
 #include "step.h"
 #include "numeric/gsl_quiet.h"

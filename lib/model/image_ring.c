@@ -4,9 +4,9 @@
 #include <fftw3.h>
 #include <limits.h>
 #include <math.h>
-#include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
+#include <threads.h>
 
 size_t image_ring_sites(const ric_chain *chain) {
   switch (chain->ends) {
@@ -77,7 +77,17 @@ void lattice_transform_free(double *x) {
 
 /* FFTW's planner keeps what it has learned for all plans of the process, unguarded: one thread plans at a time. Plans
  * are used without it. */
-static pthread_mutex_t planner = PTHREAD_MUTEX_INITIALIZER;
+static mtx_t planner;
+
+static void make_planner(void) {
+  mtx_init(&planner, mtx_plain); /* fails for kinds of locks that a system does not have; this one all have */
+}
+
+static void lock_planner(void) {
+  static once_flag once = ONCE_FLAG_INIT;
+  call_once(&once, make_planner);
+  mtx_lock(&planner);
+}
 
 static void make_plans(lattice_transform *t, const ric_chain *chain, double *x) {
   int n = (int)chain->particles;
@@ -88,22 +98,22 @@ static void make_plans(lattice_transform *t, const ric_chain *chain, double *x) 
     there = FFTW_REDFT10;
     back = FFTW_REDFT01;
   }
-  pthread_mutex_lock(&planner);
+  lock_planner();
   t->forward = fftw_plan_r2r_1d(n, x, x, there, FFTW_ESTIMATE);
   t->inverse = fftw_plan_r2r_1d(n, x, x, back, FFTW_ESTIMATE);
   if (chain->ends != RIC_ENDS_PERIODIC)
     t->kernel = fftw_plan_r2r_1d((int)(t->sites / 2 + 1), x, x, FFTW_REDFT00, FFTW_ESTIMATE);
-  pthread_mutex_unlock(&planner);
+  mtx_unlock(&planner);
 }
 
 void lattice_transform_destroy(lattice_transform **t) {
   if (!t || !*t)
     return;
-  pthread_mutex_lock(&planner);
+  lock_planner();
   fftw_destroy_plan((*t)->forward);
   fftw_destroy_plan((*t)->inverse);
   fftw_destroy_plan((*t)->kernel);
-  pthread_mutex_unlock(&planner);
+  mtx_unlock(&planner);
   free(*t);
   *t = NULL;
 }

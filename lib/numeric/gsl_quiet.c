@@ -1,6 +1,6 @@
 #include "gsl_quiet.h"
 
-#include <pthread.h>
+#include <threads.h>
 
 #include <gsl/gsl_errno.h>
 
@@ -9,6 +9,6 @@ static void switch_off(void) {
 }
 
 void keep_gsl_quiet(void) {
-  static pthread_once_t once = PTHREAD_ONCE_INIT;
-  pthread_once(&once, switch_off);
+  static once_flag once = ONCE_FLAG_INIT;
+  call_once(&once, switch_off);
 }

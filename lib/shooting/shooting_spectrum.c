@@ -4,7 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-
 #include "floquet/multipliers.h"
 #include "shooting.h"
 #include "numeric/gsl_quiet.h"

@@ -12,8 +12,8 @@ uint64_t digest_bytes(uint64_t seed, const void *bytes, size_t size) {
   return digest;
 }
 
-/* Each step is a bijection of the digest and of the word: a changed word changes all that follows. The rotation brings the
- * high bits, where products collect, to where the next product uses them. */
+/* Each step is a bijection of the digest and of the word: a changed word changes all that follows. The rotation brings
+ * the high bits, where products collect, to where the next product uses them. */
 uint64_t digest_words(const void *bytes, size_t size) {
   const unsigned char *at = bytes;
   uint64_t digest = basis, word;
