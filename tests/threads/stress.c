@@ -13,7 +13,7 @@
 
 #include "bench.h"
 
-enum { MOST_THREADS = 64, MOST_SCENARIOS = 128, LISTS = 8 };
+enum { MOST_THREADS = 64, MOST_SCENARIOS = 128, LISTS = 8, SOLVERS = 3000 };
 
 static const benchmark *const lists[LISTS] = {
     benchmarks,        trajectory_benchmarks, multiplier_benchmarks, continuation_benchmarks,
@@ -78,17 +78,23 @@ static int choose(const char *const *names, size_t number) {
 
 static atomic_int failures;
 
+static void run_one(const benchmark *b, size_t thread) {
+  const work_done done = b->run(b->argument, b->variant);
+  if (!done.failed)
+    return;
+  fprintf(stderr, "stress: %s in thread %zu: not the result that the scenario promises\n", b->name, thread);
+  atomic_fetch_add(&failures, 1);
+}
+
 /* @param user  number of the thread, which says where it begins */
 static void *run_all(void *user) {
   const size_t begin = (size_t)(uintptr_t)user;
   for (size_t i = 0; i < count; i++) {
     const benchmark *b = chosen[(i + begin * 7) % count];
-    const work_done done = b->run(b->argument, b->variant);
-    if (done.failed) {
-      fprintf(stderr, "stress: %s in thread %zu: not the result that the scenario promises\n", b->name, begin);
-      atomic_fetch_add(&failures, 1);
-    }
+    run_one(b, begin);
   }
+  for (size_t i = 0; i < SOLVERS; i++) /* solvers come and go: their plans are made and destroyed side by side */
+    run_one(&benchmarks[0], begin);
   return NULL;
 }
 
