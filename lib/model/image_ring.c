@@ -4,6 +4,7 @@
 #include <fftw3.h>
 #include <limits.h>
 #include <math.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 #include <threads.h>
@@ -55,10 +56,46 @@ double image_ring_entry(const ric_chain *chain, const double *kernel, size_t k, 
   return direct;
 }
 
+/* FFTW ends the program when it gets no memory, also for its buffers during a transform. Before it plans, there must be
+ * room for what plans take; and room for its buffers is held, and given back for the time of a transform. Measured for
+ * lengths with and without large prime factors: plans take up to 40 bytes per value each and 80 while they are made,
+ * transforms up to 64. Short transforms take less than any process has left. */
+enum { PLAN_BYTES = 200, BUFFER_BYTES = 72, SHORT = 1 << 14 };
+
+typedef struct transform_room {
+  void *bytes; /* NULL: none needed, or just given back */
+  size_t size;
+} transform_room;
+
 struct lattice_transform {
   size_t sites, length;
+  transform_room *room;
   fftw_plan forward, inverse, kernel; /* kernel is NULL on a ring: the inverse of an even spectrum */
 };
+
+static bool room_take(transform_room *room) {
+  room->bytes = room->size ? malloc(room->size) : NULL;
+  return room->bytes || !room->size;
+}
+
+static void room_give(transform_room *room) {
+  free(room->bytes);
+  room->bytes = NULL;
+}
+
+/* Whether there is room for plans of this length now. */
+static bool has_room_for_plans(size_t length) {
+  transform_room room = {.size = length < SHORT ? 0 : PLAN_BYTES * length};
+  const bool has = room_take(&room);
+  room_give(&room);
+  return has;
+}
+
+static void execute(const lattice_transform *t, fftw_plan plan, double *x) {
+  room_give(t->room);
+  fftw_execute_r2r(plan, x, x);
+  (void)room_take(t->room); /* if another thread was faster, the next transform takes its chance */
+}
 
 size_t lattice_transform_length(const lattice_transform *t) {
   return t->length;
@@ -114,6 +151,9 @@ void lattice_transform_destroy(lattice_transform **t) {
   fftw_destroy_plan((*t)->inverse);
   fftw_destroy_plan((*t)->kernel);
   mtx_unlock(&planner);
+  if ((*t)->room)
+    room_give((*t)->room);
+  free((*t)->room);
   free(*t);
   *t = NULL;
 }
@@ -131,10 +171,12 @@ ric_status lattice_transform_create(const ric_chain *chain, lattice_transform **
   t->sites = image_ring_sites(chain);
   t->length = t->sites / 2 + 1 > chain->particles ? t->sites / 2 + 1 : chain->particles;
   x = lattice_transform_alloc(t);
-  if (!x)
+  t->room = calloc(1, sizeof *t->room);
+  if (!x || !t->room || !has_room_for_plans(t->length))
     goto out;
   make_plans(t, chain, x);
-  if (t->forward && t->inverse && (t->kernel || chain->ends == RIC_ENDS_PERIODIC))
+  t->room->size = t->length < SHORT ? 0 : BUFFER_BYTES * t->length;
+  if (room_take(t->room) && t->forward && t->inverse && (t->kernel || chain->ends == RIC_ENDS_PERIODIC))
     status = RIC_OK;
 out:
   lattice_transform_free(x);
@@ -147,16 +189,16 @@ out:
 }
 
 void lattice_transform_forward(const lattice_transform *t, double *x) {
-  fftw_execute_r2r(t->forward, x, x);
+  execute(t, t->forward, x);
 }
 
 void lattice_transform_inverse(const lattice_transform *t, double *x) {
-  fftw_execute_r2r(t->inverse, x, x);
+  execute(t, t->inverse, x);
 }
 
 void lattice_transform_kernel(const lattice_transform *t, double *f) {
   if (t->kernel) {
-    fftw_execute_r2r(t->kernel, f, f); /* f_0 + 2 sum f_j cos + (-1)^d f_{N/2} */
+    execute(t, t->kernel, f); /* f_0 + 2 sum f_j cos + (-1)^d f_{N/2} */
   } else {
     memset(f + t->sites / 2 + 1, 0, (t->length - t->sites / 2 - 1) * sizeof *f);
     lattice_transform_inverse(t, f); /* half-complex: real parts f, imaginary parts 0 */

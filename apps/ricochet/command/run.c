@@ -234,6 +234,16 @@ static int agree_on_entries(run *r, message *why) {
   return ranks_agree(code, why);
 }
 
+/* What tables there are besides those of the tasks, all of it or none. */
+static int find_extras(run *r, const row_source *done, message *why) {
+  const unsigned long refusals = ric_memory_refusals();
+  const int code = r->kind->extra(r->study, &r->plan, done, (ric_poll){.call = poll_stop}, r->extras, why);
+  if (code || ric_memory_refusals() == refusals)
+    return code;
+  return refuse(why, EXIT_RUN, "%s: no memory for what follows the tasks; all of them are kept, --resume goes on",
+                r->output.path);
+}
+
 /* Everything after the tasks: their rows into the result. */
 static int assemble(run *r, message *why) {
   ranks_barrier();
@@ -251,7 +261,7 @@ static int assemble(run *r, message *why) {
     code = agree_on_entries(r, why);
   const row_source done = {.read = read_done, .user = r};
   if (!code)
-    code = ranks_agree(r->kind->extra(r->study, &r->plan, &done, (ric_poll){.call = poll_stop}, r->extras, why), why);
+    code = ranks_agree(find_extras(r, &done, why), why);
   if (!code)
     code = write_result(r, why);
   ranks_sum(r->outcomes, 64);
