@@ -83,9 +83,13 @@ static void room_give(transform_room *room) {
   room->bytes = NULL;
 }
 
+size_t lattice_transform_bytes(size_t length) {
+  return length < SHORT ? 0 : PLAN_BYTES * length;
+}
+
 /* Whether there is room for plans of this length now. */
 static bool has_room_for_plans(size_t length) {
-  transform_room room = {.size = length < SHORT ? 0 : PLAN_BYTES * length};
+  transform_room room = {.size = lattice_transform_bytes(length)};
   const bool has = room_take(&room);
   room_give(&room);
   return has;

@@ -269,7 +269,7 @@ double ric_orbit_bytes(const ric_chain *chain, const ric_pattern *pattern, ric_o
   if (method == RIC_METHOD_DENSE) /* two matrices of size 2n, two of size n */
     return word * (10 * n * n + 40 * n + m);
   double c = (double)unit_cell_sites(chain, pattern), contacts = fmax(1, m * c / n) + BORDER_MODES;
-  return word * (17 * c + 4 * n + m + contacts * (contacts + 9)) + n;
+  return word * (17 * c + 4 * n + m + contacts * (contacts + 9)) + n + (double)lattice_transform_bytes((size_t)c);
 }
 
 static ric_status check_problem(const ric_orbit_solver *s, const ric_chain *chain, const ric_pattern *pattern,
