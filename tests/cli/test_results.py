@@ -601,3 +601,15 @@ def test_an_old_result_is_not_read_before_it_is_replaced(ricochet, folder):
     _, status, usage = os.wait4(process.pid, 0)
     process.returncode = os.waitstatus_to_exitcode(status)
     assert process.returncode == 0 and usage.ru_maxrss < 500_000, usage
+
+
+# --- size ---
+
+
+def test_texts_are_as_wide_as_the_longest_one(ricochet, folder):
+    for name, gammas in (("some", [0.1, 0.25, 0.3]), ("none", [0.05, 0.1])):
+        path = run(ricochet, folder, study(at_start="[15]", sweep=f"{{parameter: model.gamma, values: {gammas}}}"), name=name)
+        with h5py.File(path) as file:
+            reasons = file["orbits/reason"]
+            assert reasons.dtype.itemsize == max(1, *(len(text) for text in reasons[()].tolist()))
+            assert any(reasons[()]) == (name == "some")
