@@ -14,7 +14,14 @@ const char *ric_status_text(ric_status status) {
   return "unknown status";
 }
 
+static _Thread_local unsigned long refusals;
+
+unsigned long ric_memory_refusals(void) {
+  return refusals;
+}
+
 ric_status ric_fail(ric_error *error, ric_status status, const char *format, ...) {
+  refusals += status == RIC_ENOMEM;
   if (error) {
     va_list arguments;
     va_start(arguments, format);

@@ -10,6 +10,7 @@
 #include <gsl/gsl_roots.h>
 
 #include "cycle_equations.h"
+#include "numeric/gsl_quiet.h"
 
 enum { MOST_STEPS = 100000, MOST_TRIALS = 200 };
 
@@ -146,12 +147,11 @@ static ric_status start(edge_search *w, double p, double *z, ric_cycle_window *w
 ric_status ric_cycle_find(const ric_map_line *line, double p, size_t period, double *z, ric_cycle_window *window,
                           ric_error *error) {
   edge_search w;
-  gsl_error_handler_t *handler = gsl_set_error_handler_off();
+  keep_gsl_quiet();
   ric_status status = edge_search_init(&w, line, p, period, 1, z, error);
   if (status == RIC_OK)
     status = start(&w, p, z, window, error);
   edge_search_clear(&w);
-  gsl_set_error_handler(handler);
   return status;
 }
 
@@ -397,12 +397,11 @@ ric_status ric_cycle_window_find(const ric_map_line *line, double p, size_t peri
   if (!(step >= 0 && isfinite(step)))
     return ric_fail(error, RIC_EINVAL, "step = %g, expected a finite number >= 0", step);
   const double first = step > 0 ? step : 1e-3;
-  gsl_error_handler_t *handler = gsl_set_error_handler_off();
+  keep_gsl_quiet();
   ric_status status = edge_search_init(&w, line, p, period, first, z, error ? error : &own);
   w.poll = poll;
   if (status == RIC_OK)
     status = find_window(&w, low, high, first * (p != 0 ? fabs(p) : 1), z, window, error);
   edge_search_clear(&w);
-  gsl_set_error_handler(handler);
   return status;
 }

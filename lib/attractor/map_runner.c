@@ -5,12 +5,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <gsl/gsl_errno.h>
-
 #include "attractor.h"
 #include "map_simd.h"
 #include "numeric/linear.h"
 #include "numeric/number_block.h"
+#include "numeric/gsl_quiet.h"
 
 enum {
   PIECE_LENGTH = 16,    /* iterates at a time: their states stay in the cache */
@@ -117,11 +116,10 @@ ric_status ric_map_runner_create(size_t size, const ric_attractor_options *optio
   r->kernel = map_kernel_of(lanes);
   size_t fit = 4096 / (size * (1 + o.exponents)) / size; /* short pieces: the poll is called in time */
   r->piece = fit < 1 ? 1 : fit < PIECE_LENGTH ? fit : PIECE_LENGTH;
-  gsl_error_handler_t *handler = gsl_set_error_handler_off();
+  keep_gsl_quiet();
   ric_status status = allocate_runner(r, size, error);
   if (status == RIC_OK)
     status = set_directions(r, error);
-  gsl_set_error_handler(handler);
   if (status != RIC_OK)
     ric_map_runner_destroy(&r);
   *runner = r;

@@ -4,10 +4,10 @@
 #include <math.h>
 #include <string.h>
 
-#include <gsl/gsl_errno.h>
 #include <gsl/gsl_linalg.h>
 
 #include "curve.h"
+#include "numeric/gsl_quiet.h"
 
 /* From this size on LU with row pivoting: 9 times as quick as QR at 1000, twice at 30, since GSL does it in blocks. It
  * allocates its pivots in every call, a cost that small problems avoid. */
@@ -200,9 +200,8 @@ ric_status ric_curve_solve(ric_curve *curve, double *u, double p, int *iteration
   memcpy(x, u, n * sizeof *u);
   x[n] = p;
   curve_parameter_row(curve, 1, curve->bound_row);
-  gsl_error_handler_t *handler = gsl_set_error_handler_off();
+  keep_gsl_quiet();
   ric_status status = corrector_run(curve, curve->bound_row, x, false, &count, error);
-  gsl_set_error_handler(handler);
   if (iterations)
     *iterations = count;
   if (status == RIC_OK)

@@ -1,11 +1,10 @@
 /* Points of a curve, products of their vectors, and the workspace of a continuation. */
 #include "curve.h"
+#include "numeric/gsl_quiet.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <gsl/gsl_errno.h>
 
 /* Points of a curve, and the products of their vectors. */
 
@@ -170,9 +169,8 @@ static ric_status allocate_curve(ric_curve *c, ric_error *error) {
   c->block = calloc(numbers, sizeof *c->block);
   c->linear.permutation = calloc(size, sizeof *c->linear.permutation);
   c->found = calloc(tests + 2, sizeof *c->found);
-  gsl_error_handler_t *handler = gsl_set_error_handler_off(); /* which would abort without memory */
+  keep_gsl_quiet();
   c->brent = gsl_root_fsolver_alloc(gsl_root_fsolver_brent);
-  gsl_set_error_handler(handler);
   if (!c->block || !c->linear.permutation || !c->found || !c->brent)
     return ric_fail(error, RIC_ENOMEM, "no memory for a curve of %zu unknowns and %zu tests", n, tests);
   c->row = bordered_place(&c->linear, n, c->block);

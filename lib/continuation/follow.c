@@ -3,10 +3,9 @@
 #include <stdio.h>
 #include <string.h>
 
-#include <gsl/gsl_errno.h>
-
 #include "corrector.h"
 #include "step.h"
+#include "numeric/gsl_quiet.h"
 
 /* Special points closer to a start with a given tangent, relative to the first step, are the start itself: a branch
  * point or a fold, accurate to rounding only. */
@@ -188,9 +187,8 @@ ric_status ric_curve_follow(ric_curve *curve, double *u, double p, const double 
   curve_follower w = {.c = curve, .point = point, .user = user, .run = run};
   *run = (ric_curve_run){0};
   curve->iterations = curve->linear.jacobians = 0;
-  gsl_error_handler_t *handler = gsl_set_error_handler_off();
+  keep_gsl_quiet();
   ric_status status = run_to_end(&w, u, p, tangent);
-  gsl_set_error_handler(handler);
   run->iterations = curve->iterations;
   run->jacobians = curve->linear.jacobians;
   if (status != RIC_OK && error)

@@ -10,6 +10,7 @@
 
 #include "corrector.h"
 #include "step.h"
+#include "numeric/gsl_quiet.h"
 
 /* The bracket is bisected by corrected points to this fraction of the step. There the cubic through its ends replaces
  * the curve: a step turns by less than 1, so the error is at most about (1/256)^4 / 384 = 6e-13 of the radius of
@@ -383,9 +384,8 @@ ric_status ric_curve_switch(ric_curve *curve, const double *u, double p, const d
   for (size_t i = 0; i <= n; i++)
     t[i] = tangent[i] / length;
   curve_tangent_row(curve, t, curve->bound_row);
-  gsl_error_handler_t *handler = gsl_set_error_handler_off();
+  keep_gsl_quiet();
   ric_status status = other_tangent(curve, &k, x, t, other, error);
-  gsl_set_error_handler(handler);
   clear(&k);
   return status;
 }

@@ -7,6 +7,7 @@
 #include <gsl/gsl_linalg.h>
 
 #include "family.h"
+#include "numeric/gsl_quiet.h"
 
 /* Families that meet: what all switches share. */
 
@@ -323,7 +324,7 @@ ric_status ric_family_cross(ric_family *family, const ric_family_point *point, r
   ric_status status = family_set(family, point->parameter, family->problem.second, error);
   if (status == RIC_OK)
     status = reserve(&c);
-  gsl_error_handler_t *handler = gsl_set_error_handler_off();
+  keep_gsl_quiet();
   if (status == RIC_OK) {
     copy_impacts(&c);
     if (point->kind == RIC_FAMILY_GRAZING)
@@ -337,7 +338,6 @@ ric_status ric_family_cross(ric_family *family, const ric_family_point *point, r
     status = family_branch(&c.problem, family, point, c.x, c.times, c.period, junction, error);
   if (status == RIC_OK)
     status = find_sides(&c);
-  gsl_set_error_handler(handler);
   family_evaluate_again(family, point);
   if (status != RIC_OK)
     ric_family_junction_clear(junction);
@@ -410,7 +410,7 @@ ric_status ric_family_double(ric_family *family, const ric_family_point *point, 
   if (!family->problem.set && family->problem.motion.kind != RIC_MOTION_AUTONOMOUS)
     return ric_fail(error, RIC_EINVAL, "a family along its period, expected one along a number of the system");
   family_forget(family);
-  gsl_error_handler_t *handler = gsl_set_error_handler_off();
+  keep_gsl_quiet();
   ric_status status = family_set(family, point->parameter, family->problem.second, error);
   if (status == RIC_OK)
     status = traverse_twice(&d, error);
@@ -418,7 +418,6 @@ ric_status ric_family_double(ric_family *family, const ric_family_point *point, 
     status = family_branch(&d.problem, family, point, point->z, d.times, 2 * d.period, junction, error);
   if (status == RIC_OK)
     status = find_tangent(junction, error);
-  gsl_set_error_handler(handler);
   family_forget(family);
   if (status != RIC_OK)
     ric_family_junction_clear(junction);

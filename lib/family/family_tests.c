@@ -1,9 +1,9 @@
 /* Test functions of a family, and the special points at their zeros. */
-#include <complex.h>
 #include <math.h>
 #include <string.h>
 
 #include "family.h"
+#include "numeric/complex_number.h"
 
 /* Imaginary parts of eigenvalues that coincide by a symmetry: below it, relative to 1 + the modulus, they are
  * rounding. */

@@ -8,10 +8,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <gsl/gsl_errno.h>
 #include <gsl/gsl_linalg.h>
 
 #include "family.h"
+#include "numeric/gsl_quiet.h"
 
 /* Step of differences of psi, relative to 1 + the size of the variable. */
 static const double psi_step = 1e-5;
@@ -235,7 +235,7 @@ ric_status ric_family_trace(ric_family *f, const ric_family_point *point, const 
   if (f->problem.parameters != 2)
     return ric_fail(error, RIC_EINVAL, "a family with one parameter, expected two");
   family_forget(f);
-  gsl_error_handler_t *handler = gsl_set_error_handler_off();
+  keep_gsl_quiet();
   t.J = malloc((n * n + 6 * n + 4) * sizeof *t.J);
   t.order = gsl_permutation_alloc(n);
   ric_status status = RIC_ENOMEM;
@@ -248,7 +248,6 @@ ric_status ric_family_trace(ric_family *f, const ric_family_point *point, const 
   } else
     (void)ric_fail(error, RIC_ENOMEM, "no memory for a curve of %zu unknowns", n + 1);
   family_evaluate_again(f, point);
-  gsl_set_error_handler(handler);
   gsl_permutation_free(t.order);
   free(t.J);
   return status;

@@ -2,10 +2,9 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include <gsl/gsl_errno.h>
-
 #include "orbit_multipliers.h"
 #include "ricochet/orbit_multipliers.h"
+#include "numeric/gsl_quiet.h"
 
 /* Rounding of alpha, relative to the largest entry of the reduced matrix: ten times the observed value; its root for
  * the imaginary part of two that collide. */
@@ -225,9 +224,8 @@ ric_status ric_orbit_critical_points(ric_orbit_solver *solver, const ric_chain *
   RIC_TRY(check_family(chain, pattern, low, high, points, error));
   RIC_TRY(orbit_spectrum_of(solver, &f.spectrum, error));
   RIC_TRY(ric_orbit_init(&f.orbit, chain->particles, ric_pattern_impacts(pattern), error));
-  gsl_error_handler_t *handler = gsl_set_error_handler_off();
+  keep_gsl_quiet();
   ric_status status = search(&f, low, high, points);
-  gsl_set_error_handler(handler);
   ric_orbit_clear(&f.orbit);
   *count = f.count;
   return status;

@@ -5,10 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <gsl/gsl_errno.h>
-
 #include "impact/trajectory.h"
 #include "model/system_model.h"
+#include "numeric/gsl_quiet.h"
 
 ric_lyapunov_options ric_lyapunov_options_default(void) {
   return (ric_lyapunov_options){.interval = 1};
@@ -159,11 +158,10 @@ ric_status lyapunov_course_run(lyapunov_course *c, double end, ric_run *run, ric
   /* Contacts that are closed at the start are processed before tangent vectors are set. */
   RIC_TRY(ric_trajectory_run(c->trajectory, time_now(c), c->options.observer, run, error));
   bool over = run->outcome != RIC_RUN_COMPLETED;
-  gsl_error_handler_t *handler = gsl_set_error_handler_off();
+  keep_gsl_quiet();
   ric_status status = RIC_OK;
   while (!over && status == RIC_OK)
     status = advance_course(c, end, run, &over, error);
-  gsl_set_error_handler(handler);
   return status;
 }
 
@@ -187,9 +185,8 @@ ric_status ric_lyapunov_run(ric_trajectory *trajectory, double end, const ric_ly
   RIC_TRY(check_course(&o, size, end, error));
   for (size_t k = 0; k < (o.count ? o.count : size); k++)
     exponents[k] = NAN;
-  gsl_error_handler_t *handler = gsl_set_error_handler_off();
+  keep_gsl_quiet();
   ric_status status = lyapunov_course_init(&c, trajectory, &o, error);
-  gsl_set_error_handler(handler);
   if (status == RIC_OK)
     status = run_course(&c, end, exponents, lyapunov, error);
   lyapunov_course_clear(&c);

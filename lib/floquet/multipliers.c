@@ -1,7 +1,6 @@
 /* Multipliers of a matrix, by GSL, and of an even motion, by its block; the verdict. */
 #include "multipliers.h"
 
-#include <complex.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdint.h>
@@ -13,6 +12,8 @@
 #include <gsl/gsl_linalg.h>
 
 #include "ricochet/multipliers.h"
+#include "numeric/gsl_quiet.h"
+#include "numeric/complex_number.h"
 
 /* A pair (mu, 1/mu) of multipliers and its representative alpha = (mu + 1/mu) / 2. */
 
@@ -329,12 +330,11 @@ ric_status ric_multipliers_of_matrix(const double *M, size_t dimension, size_t t
   ric_multiplier_options o = options ? *options : ric_multiplier_options_default();
   RIC_TRY(multiplier_options_check(&o, error));
   RIC_TRY(multiplier_matrix_check(M, dimension, trivial, m, error));
-  gsl_error_handler_t *handler = gsl_set_error_handler_off();
+  keep_gsl_quiet();
   ric_status status = multiplier_work_init(&work, dimension, error);
   if (status == RIC_OK)
     status = multiplier_work_find(&work, M, trivial, &o, m, error);
   multiplier_work_clear(&work);
-  gsl_set_error_handler(handler);
   return status;
 }
 

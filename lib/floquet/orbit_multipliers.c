@@ -4,12 +4,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include <gsl/gsl_errno.h>
-
 #include "determinant.h"
 #include "multipliers.h"
 #include "orbit_multipliers.h"
 #include "ricochet/monodromy.h"
+#include "numeric/gsl_quiet.h"
 
 ric_orbit_multiplier_options ric_orbit_multiplier_options_default(void) {
   return (ric_orbit_multiplier_options){.method = RIC_MULTIPLIERS_AUTO, .judge = ric_multiplier_options_default()};
@@ -171,9 +170,8 @@ ric_status ric_orbit_multipliers(ric_orbit_solver *solver, const ric_chain *chai
   }
   if (ric_poll_stops(o.poll))
     return ric_fail(e, RIC_ESTOPPED, "stopped before the multipliers");
-  gsl_error_handler_t *handler = gsl_set_error_handler_off();
+  keep_gsl_quiet();
   ric_status status = compute(solver, chain, pattern, orbit, &o, m, e);
-  gsl_set_error_handler(handler);
   if (status != RIC_OK)
     ric_multipliers_fail(m, e->message);
   return status;

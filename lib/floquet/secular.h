@@ -23,7 +23,7 @@
 #ifndef RICOCHET_SECULAR_H
 #define RICOCHET_SECULAR_H
 
-#include <complex.h>
+#include "numeric/complex_number.h"
 
 #include <gsl/gsl_eigen.h>
 

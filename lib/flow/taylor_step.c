@@ -1,4 +1,5 @@
 /* Steps of Taylor flows: how order and length are chosen, and how a step is made. */
+#define _DEFAULT_SOURCE /* lgamma_r */
 #include "taylor_step.h"
 
 #include <float.h>
@@ -35,6 +36,12 @@ static const double resolution = 1e-12;
 /* Series with larger first coefficients may overflow when evaluated. */
 static const double most_size = DBL_MAX * 1e-6;
 
+/* ln n!. (lgamma itself writes a variable of the process.) */
+static double log_factorial(int n) {
+  int sign;
+  return lgamma_r(n + 1.0, &sign);
+}
+
 int taylor_order(double tolerance) {
   int order = LEAST_ORDER;
   double term = pow(longest_reach, 5) / 120; /* of order + 1 */
@@ -46,14 +53,14 @@ int taylor_order(double tolerance) {
 }
 
 double taylor_reach(double tolerance, int order) {
-  double reach = exp((log(share * tolerance) + lgamma(order + 2.0)) / (order + 1));
+  double reach = exp((log(share * tolerance) + log_factorial(order + 1)) / (order + 1));
   return fmin(reach, longest_reach);
 }
 
 /** Longest step times |s| for tangent vectors of linear motions, independent of the motion itself: 3.3 at order 26. A
  *  motion that does not excite fast modes gives no bound for tangent vectors that do. */
 static double taylor_carried_reach(double tolerance, int order) {
-  return exp((log(fmax(carried_error, tolerance)) + lgamma(order + 2.0)) / (order + 1));
+  return exp((log(fmax(carried_error, tolerance)) + log_factorial(order + 1)) / (order + 1));
 }
 
 double taylor_rate_bound(double stiffness, double damping) {

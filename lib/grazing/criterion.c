@@ -7,13 +7,13 @@
 #include <string.h>
 
 #include <gsl/gsl_blas.h>
-#include <gsl/gsl_errno.h>
 
 #include "dominant.h"
 #include "numeric/vector.h"
 #include "numeric/linear.h"
 #include "numeric/number_block.h"
 #include "ricochet/grazing_criterion.h"
+#include "numeric/gsl_quiet.h"
 
 /* The proof that all coefficients from some index on have the sign of alpha.
  *
@@ -429,7 +429,7 @@ ric_status ric_grazing_criterion_find(const ric_grazing_map *map, const ric_graz
   RIC_TRY(check_options(&o, error));
   if (!coefficients && count > 0)
     return ric_fail(error, RIC_EINVAL, "coefficients = NULL, expected an array of count = %zu", count);
-  gsl_error_handler_t *handler = gsl_set_error_handler_off();
+  keep_gsl_quiet();
   ric_status status = decide_criterion(&work, map, &found, error);
   if (status == RIC_OK)
     status = fill_coefficients(&work, coefficients, count, error);
@@ -441,7 +441,6 @@ ric_status ric_grazing_criterion_find(const ric_grazing_map *map, const ric_graz
   tail_proof_clear(&work.tail);
   dominant_clear(&work.dominant);
   balanced_map_clear(&work.map);
-  gsl_set_error_handler(handler);
   return status;
 }
 

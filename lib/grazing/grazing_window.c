@@ -12,6 +12,7 @@
 #include "numeric/constants.h"
 #include "one_impact.h"
 #include "ricochet/grazing_map.h"
+#include "numeric/gsl_quiet.h"
 
 /* Where pairs of complex multipliers of one-impact orbits lie on the unit circle.
  *
@@ -291,7 +292,7 @@ ric_status ric_grazing_window_find(const ric_grazing_map *map, size_t period, ri
   cuts c = {0};
   double *crossings = NULL;
   ric_grazing_window found = {.period = period};
-  gsl_error_handler_t *handler = gsl_set_error_handler_off();
+  keep_gsl_quiet();
   ric_status status = one_impact_init(&orbits, map, period, error);
   if (status != RIC_OK)
     goto out;
@@ -310,6 +311,5 @@ out:
   free(crossings);
   free(c.list);
   one_impact_clear(&orbits);
-  gsl_set_error_handler(handler);
   return status;
 }

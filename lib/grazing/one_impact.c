@@ -7,11 +7,11 @@
 #include <string.h>
 
 #include <gsl/gsl_blas.h>
-#include <gsl/gsl_errno.h>
 #include <gsl/gsl_linalg.h>
 #include <gsl/gsl_poly.h>
 
 #include "ricochet/grazing_map.h"
+#include "numeric/gsl_quiet.h"
 
 /* Largest period of the closed forms: rounding errors accumulate, and d decreases by lambda^2 with each period. */
 enum { MOST_PERIOD = 10000 };
@@ -193,14 +193,13 @@ ric_status ric_grazing_cycle_at(const ric_grazing_map *map, size_t period, doubl
   one_impact orbits;
   if (!(y > 0 && isfinite(y)))
     return ric_fail(error, RIC_EINVAL, "y = %g, expected a finite number > 0", y);
-  gsl_error_handler_t *handler = gsl_set_error_handler_off();
+  keep_gsl_quiet();
   ric_status status = one_impact_init(&orbits, map, period, error);
   if (status == RIC_OK)
     status = describe(&orbits, y, cycle, error);
   if (status == RIC_OK && z)
     status = find_state(&orbits, y, z, error);
   one_impact_clear(&orbits);
-  gsl_set_error_handler(handler);
   return status;
 }
 
@@ -226,7 +225,7 @@ ric_status ric_grazing_cycles(const ric_grazing_map *map, size_t period, double 
   size_t found = 0;
   if (!isfinite(d))
     return ric_fail(error, RIC_EINVAL, "d = %g, expected a finite number", d);
-  gsl_error_handler_t *handler = gsl_set_error_handler_off();
+  keep_gsl_quiet();
   ric_status status = one_impact_init(&orbits, map, period, error);
   if (status == RIC_OK)
     found = solve_for_y(&orbits, d, y);
@@ -235,7 +234,6 @@ ric_status ric_grazing_cycles(const ric_grazing_map *map, size_t period, double 
     list[i].d = d; /* not that of the rounded y */
   }
   one_impact_clear(&orbits);
-  gsl_set_error_handler(handler);
   if (status == RIC_OK) {
     memcpy(cycles, list, found * sizeof *list);
     *count = found;

@@ -4,8 +4,10 @@
 #include <fftw3.h>
 #include <limits.h>
 #include <math.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
+#include <threads.h>
 
 size_t image_ring_sites(const ric_chain *chain) {
   switch (chain->ends) {
@@ -54,10 +56,50 @@ double image_ring_entry(const ric_chain *chain, const double *kernel, size_t k, 
   return direct;
 }
 
+/* FFTW ends the program when it gets no memory, also for its buffers during a transform. Before it plans, there must be
+ * room for what plans take; and room for its buffers is held, and given back for the time of a transform. Measured for
+ * lengths with and without large prime factors: plans take up to 40 bytes per value each and 80 while they are made,
+ * transforms up to 64. Short transforms take less than any process has left. */
+enum { PLAN_BYTES = 200, BUFFER_BYTES = 72, SHORT = 1 << 14 };
+
+typedef struct transform_room {
+  void *bytes; /* NULL: none needed, or just given back */
+  size_t size;
+} transform_room;
+
 struct lattice_transform {
   size_t sites, length;
+  transform_room *room;
   fftw_plan forward, inverse, kernel; /* kernel is NULL on a ring: the inverse of an even spectrum */
 };
+
+static bool room_take(transform_room *room) {
+  room->bytes = room->size ? malloc(room->size) : NULL;
+  return room->bytes || !room->size;
+}
+
+static void room_give(transform_room *room) {
+  free(room->bytes);
+  room->bytes = NULL;
+}
+
+size_t lattice_transform_bytes(size_t length) {
+  return length < SHORT ? 0 : PLAN_BYTES * length;
+}
+
+/* Whether there is room for plans of this length now. */
+static bool has_room_for_plans(size_t length) {
+  transform_room room = {.size = lattice_transform_bytes(length)};
+  const bool has = room_take(&room);
+  room_give(&room);
+  return has;
+}
+
+static void execute(const lattice_transform *t, fftw_plan plan, double *x) {
+  room_give(t->room);
+  fftw_execute_r2r(plan, x, x);
+  (void)room_take(t->room); /* if another thread was faster, the next transform takes its chance */
+}
 
 size_t lattice_transform_length(const lattice_transform *t) {
   return t->length;
@@ -74,6 +116,20 @@ void lattice_transform_free(double *x) {
   fftw_free(x);
 }
 
+/* FFTW's planner keeps what it has learned for all plans of the process, unguarded: one thread plans at a time. Plans
+ * are used without it. */
+static mtx_t planner;
+
+static void make_planner(void) {
+  mtx_init(&planner, mtx_plain); /* fails for kinds of locks that a system does not have; this one all have */
+}
+
+static void lock_planner(void) {
+  static once_flag once = ONCE_FLAG_INIT;
+  call_once(&once, make_planner);
+  mtx_lock(&planner);
+}
+
 static void make_plans(lattice_transform *t, const ric_chain *chain, double *x) {
   int n = (int)chain->particles;
   fftw_r2r_kind there = FFTW_R2HC, back = FFTW_HC2R;
@@ -83,18 +139,25 @@ static void make_plans(lattice_transform *t, const ric_chain *chain, double *x) 
     there = FFTW_REDFT10;
     back = FFTW_REDFT01;
   }
+  lock_planner();
   t->forward = fftw_plan_r2r_1d(n, x, x, there, FFTW_ESTIMATE);
   t->inverse = fftw_plan_r2r_1d(n, x, x, back, FFTW_ESTIMATE);
   if (chain->ends != RIC_ENDS_PERIODIC)
     t->kernel = fftw_plan_r2r_1d((int)(t->sites / 2 + 1), x, x, FFTW_REDFT00, FFTW_ESTIMATE);
+  mtx_unlock(&planner);
 }
 
 void lattice_transform_destroy(lattice_transform **t) {
   if (!t || !*t)
     return;
+  lock_planner();
   fftw_destroy_plan((*t)->forward);
   fftw_destroy_plan((*t)->inverse);
   fftw_destroy_plan((*t)->kernel);
+  mtx_unlock(&planner);
+  if ((*t)->room)
+    room_give((*t)->room);
+  free((*t)->room);
   free(*t);
   *t = NULL;
 }
@@ -112,10 +175,12 @@ ric_status lattice_transform_create(const ric_chain *chain, lattice_transform **
   t->sites = image_ring_sites(chain);
   t->length = t->sites / 2 + 1 > chain->particles ? t->sites / 2 + 1 : chain->particles;
   x = lattice_transform_alloc(t);
-  if (!x)
+  t->room = calloc(1, sizeof *t->room);
+  if (!x || !t->room || !has_room_for_plans(t->length))
     goto out;
   make_plans(t, chain, x);
-  if (t->forward && t->inverse && (t->kernel || chain->ends == RIC_ENDS_PERIODIC))
+  t->room->size = t->length < SHORT ? 0 : BUFFER_BYTES * t->length;
+  if (room_take(t->room) && t->forward && t->inverse && (t->kernel || chain->ends == RIC_ENDS_PERIODIC))
     status = RIC_OK;
 out:
   lattice_transform_free(x);
@@ -128,16 +193,16 @@ out:
 }
 
 void lattice_transform_forward(const lattice_transform *t, double *x) {
-  fftw_execute_r2r(t->forward, x, x);
+  execute(t, t->forward, x);
 }
 
 void lattice_transform_inverse(const lattice_transform *t, double *x) {
-  fftw_execute_r2r(t->inverse, x, x);
+  execute(t, t->inverse, x);
 }
 
 void lattice_transform_kernel(const lattice_transform *t, double *f) {
   if (t->kernel) {
-    fftw_execute_r2r(t->kernel, f, f); /* f_0 + 2 sum f_j cos + (-1)^d f_{N/2} */
+    execute(t, t->kernel, f); /* f_0 + 2 sum f_j cos + (-1)^d f_{N/2} */
   } else {
     memset(f + t->sites / 2 + 1, 0, (t->length - t->sites / 2 - 1) * sizeof *f);
     lattice_transform_inverse(t, f); /* half-complex: real parts f, imaginary parts 0 */

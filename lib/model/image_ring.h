@@ -36,6 +36,9 @@ typedef struct lattice_transform lattice_transform;
 ric_status lattice_transform_create(const ric_chain *chain, lattice_transform **out, ric_error *error);
 void lattice_transform_destroy(lattice_transform **t);
 
+/** Bytes that FFTW takes at most for transforms of a length: plans, and buffers while it works; 0 of short ones. */
+size_t lattice_transform_bytes(size_t length);
+
 /** Both work on arrays [n] from lattice_transform_alloc, in place. */
 void lattice_transform_forward(const lattice_transform *t, double *x);
 void lattice_transform_inverse(const lattice_transform *t, double *x);

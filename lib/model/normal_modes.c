@@ -15,6 +15,7 @@
 #include "numeric/vector.h"
 #include "numeric/linear.h"
 #include "ricochet/normal_modes.h"
+#include "numeric/gsl_quiet.h"
 
 /* Entries of K that differ by less, relative to the largest, differ by rounding. */
 static const double symmetry_tol = 1e-12;
@@ -279,7 +280,7 @@ ric_status ric_normal_modes(const ric_system *system, double *frequency, double 
   problem p = {0};
   if (system->taylor == SYSTEM_USER)
     return ric_fail(error, RIC_EINVAL, "modes of a user system, expected a lattice or an M-C-K system");
-  gsl_error_handler_t *handler = gsl_set_error_handler_off(); /* which would abort without memory */
+  keep_gsl_quiet();
   ric_status status = problem_init(&p, system, error);
   if (status == RIC_OK)
     status = solve_eigenproblem(&p, system, error);
@@ -288,6 +289,5 @@ ric_status ric_normal_modes(const ric_system *system, double *frequency, double 
     set_shape(&p, j, shape + j * p.n);
   }
   problem_clear(&p);
-  gsl_set_error_handler(handler);
   return status;
 }

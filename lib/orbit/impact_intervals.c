@@ -13,6 +13,7 @@
 
 #include "impact_modes.h"
 #include "numeric/constants.h"
+#include "numeric/gsl_quiet.h"
 
 enum { DEFAULT_SAMPLES = 64, MOST_SAMPLES = 1000000, MOST_ITERATIONS = 200, DIP_STEPS = 40 };
 
@@ -267,7 +268,7 @@ ric_status ric_impact_modes_intervals(ric_impact_modes *modes, double low, doubl
               .visit = visit,
               .user = user,
               .error = error};
-  gsl_error_handler_t *handler = gsl_set_error_handler_off();
+  keep_gsl_quiet();
   s.list = malloc((2 * s.samples + 4) * sizeof *s.list);
   s.brent = gsl_root_fsolver_alloc(gsl_root_fsolver_brent);
   ric_status status = ric_orbit_init(&s.orbit, modes->n, 1, error);
@@ -277,6 +278,5 @@ ric_status ric_impact_modes_intervals(ric_impact_modes *modes, double low, doubl
   free(s.list);
   if (s.brent)
     gsl_root_fsolver_free(s.brent);
-  gsl_set_error_handler(handler);
   return status;
 }

@@ -7,6 +7,7 @@
 #include <gsl/gsl_roots.h>
 
 #include "solver.h"
+#include "numeric/gsl_quiet.h"
 
 enum { MOST_RESONANCES = 100000 };
 
@@ -147,9 +148,8 @@ ric_status ric_orbit_singular_points(ric_orbit_solver *solver, const ric_chain *
   if (along == RIC_ALONG_GAMMA)
     c.unit = solver->cell.chain.gamma;
   family f = {.solver = solver, .along = along, .period = period, .error = error};
-  gsl_error_handler_t *handler = gsl_set_error_handler_off();
+  keep_gsl_quiet();
   ric_status status = search_range(&f, low * c.unit, high * c.unit, &c);
-  gsl_set_error_handler(handler);
   *count = c.count;
   return status;
 }

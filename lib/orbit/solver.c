@@ -17,6 +17,7 @@
 #include "ricochet/orbit.h"
 #include "unit_cell.h"
 #include "admissibility.h"
+#include "numeric/gsl_quiet.h"
 
 ric_orbit_options ric_orbit_options_default(void) {
   return (ric_orbit_options){.method = RIC_METHOD_IMPULSE,
@@ -268,7 +269,7 @@ double ric_orbit_bytes(const ric_chain *chain, const ric_pattern *pattern, ric_o
   if (method == RIC_METHOD_DENSE) /* two matrices of size 2n, two of size n */
     return word * (10 * n * n + 40 * n + m);
   double c = (double)unit_cell_sites(chain, pattern), contacts = fmax(1, m * c / n) + BORDER_MODES;
-  return word * (17 * c + 4 * n + m + contacts * (contacts + 9)) + n;
+  return word * (17 * c + 4 * n + m + contacts * (contacts + 9)) + n + (double)lattice_transform_bytes((size_t)c);
 }
 
 static ric_status check_problem(const ric_orbit_solver *s, const ric_chain *chain, const ric_pattern *pattern,
@@ -373,11 +374,10 @@ ric_status ric_orbit_solve(ric_orbit_solver *solver, const ric_chain *chain, con
   orbit->harmonic = 0;
   orbit->reason[0] = '\0';
   orbit->condition = NAN;
-  gsl_error_handler_t *handler = gsl_set_error_handler_off();
+  keep_gsl_quiet();
   ric_status status = check_problem(solver, chain, pattern, period, orbit, e);
   if (status == RIC_OK)
     status = solve_on_cell(solver, chain, pattern, period, orbit, e);
-  gsl_set_error_handler(handler);
   if (status != RIC_OK)
     ric_orbit_fail(orbit, e->message);
   return status;

@@ -6,7 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <gsl/gsl_errno.h>
 #include <gsl/gsl_integration.h>
 
 #include "model/lattice_system.h"
@@ -15,6 +14,7 @@
 #include "numeric/newton.h"
 #include "numeric/number_block.h"
 #include "ricochet/ritz.h"
+#include "numeric/gsl_quiet.h"
 
 /* The approximated motion at any time, and its residual in the equations of motion. */
 
@@ -378,9 +378,8 @@ static ric_status allocate_ritz(ric_ritz *r, ric_error *error) {
 }
 
 static ric_status tabulate(ric_ritz *r, ric_error *error) {
-  gsl_error_handler_t *handler = gsl_set_error_handler_off(); /* which would abort when there is no memory */
+  keep_gsl_quiet();
   gsl_integration_glfixed_table *table = gsl_integration_glfixed_table_alloc(r->points);
-  gsl_set_error_handler(handler);
   if (!table)
     return ric_fail(error, RIC_ENOMEM, "no memory for a rule of %zu points", r->points);
   for (size_t p = 0; p < r->points; p++) {

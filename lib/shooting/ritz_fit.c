@@ -3,11 +3,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <gsl/gsl_errno.h>
 #include <gsl/gsl_linalg.h>
 
 #include "numeric/constants.h"
 #include "ritz.h"
+#include "numeric/gsl_quiet.h"
 
 /* Fits omit functions that are linear combinations of others, up to this part of the first one. */
 static const double rank_tol = 1e-12;
@@ -186,14 +186,13 @@ ric_status ric_ritz_fit(ric_ritz *r, ric_shooting *shooting, const double *z, do
   RIC_TRY(ritz_check_shooting(r, shooting, error));
   if (!(frequency >= 0 && (frequency == 0 || frequency * period < two_pi)))
     return ric_fail(error, RIC_EINVAL, "frequency = %g, expected 0 to 2 pi / T = %g", frequency, two_pi / period);
-  gsl_error_handler_t *handler = gsl_set_error_handler_off(); /* which would abort when there is no memory */
+  keep_gsl_quiet();
   ric_status status = fit_init(&f, error);
   if (status == RIC_OK)
     status = sample_motion(r, shooting, z, period, f.q, error);
   if (status == RIC_OK)
     status = fit_all(&f, frequency, c, error);
   fit_clear(&f);
-  gsl_set_error_handler(handler);
   return status;
 }
 

@@ -4,10 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <gsl/gsl_errno.h>
-
 #include "floquet/multipliers.h"
 #include "shooting.h"
+#include "numeric/gsl_quiet.h"
 
 /* Derivatives of the state of a motion between two of its times. */
 
@@ -142,9 +141,8 @@ static ric_status create(ric_shooting *s, shooting_spectrum **spectrum, ric_erro
 ric_status shooting_spectrum_reserve(ric_shooting *s, ric_error *error) {
   if (s->spectrum)
     return RIC_OK;
-  gsl_error_handler_t *handler = gsl_set_error_handler_off(); /* which would abort when there is no memory */
+  keep_gsl_quiet();
   ric_status status = create(s, &s->spectrum, error);
-  gsl_set_error_handler(handler);
   return status;
 }
 
@@ -361,7 +359,7 @@ spectrum_tests shooting_spectrum_tests(ric_shooting *s) {
   spectrum_tests t = {{NAN, NAN}, NAN, NAN};
   if (k->grazing)
     return t;
-  gsl_error_handler_t *handler = gsl_set_error_handler_off();
+  keep_gsl_quiet();
   if (shooting_is_even(s)) {
     even_tests(s, &t);
   } else {
@@ -370,7 +368,6 @@ spectrum_tests shooting_spectrum_tests(ric_shooting *s) {
       *gsl_matrix_ptr(k->bordered, i, i) += 1;
     t.minus_one[0] = determinant(k, k->size);
   }
-  gsl_set_error_handler(handler);
   return t;
 }
 
@@ -403,11 +400,10 @@ ric_status shooting_multipliers(ric_shooting *s, const ric_multiplier_options *o
     fail_grazing(s->spectrum, m);
     return RIC_OK;
   }
-  gsl_error_handler_t *handler = gsl_set_error_handler_off();
+  keep_gsl_quiet();
   ric_status status = shooting_is_even(s)
                           ? even_multipliers(s, &o, m, error)
                           : multiplier_work_find(&s->spectrum->work, s->spectrum->matrix, trivial_of(s), &o, m, error);
-  gsl_set_error_handler(handler);
   return status;
 }
 

@@ -1,6 +1,7 @@
 """What tests of branches share: studies, running them, reading their results."""
 
 import os
+import resource
 import signal
 
 import h5py
@@ -68,11 +69,11 @@ def _stop(ricochet, folder, how):
     return ricochet.end(process)
 
 
-def _leave_half(ricochet, folder):
-    """Leaves a checkpoint with about half of what a run records, which ends in a torn record."""
-    (folder / "s.h5.tmp").mkdir()  # the result cannot be written, so the checkpoint stays
-    ricochet.run("s.yaml", cwd=folder).expect(FILES)
-    (folder / "s.h5.tmp").rmdir()
+def _leave_half(ricochet, folder, size):
+    """Leaves a checkpoint with about half of what a run records, which ends in a torn record. `size`: of the result, which
+    then cannot be written, so that the checkpoint stays."""
+    limit = (size - 1, size - 1)
+    ricochet.run("s.yaml", cwd=folder, before=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, limit)).expect(FILES)
     (part,) = (folder / "s.h5.ckpt").glob("part-*")
     os.truncate(part, part.stat().st_size // 2)
     assert tasks_in(folder / "s.h5.ckpt") > 0
@@ -98,7 +99,7 @@ def equal_for_all_ranks_and_after_stops(ricochet, folder, text, ranks):
         elif name == "killed":
             _stop(ricochet, own, signal.SIGKILL)
         else:
-            _leave_half(ricochet, own)
+            _leave_half(ricochet, own, paths[0].stat().st_size)
         finished, done = (own / "s.h5").exists(), tasks_in(own / "s.h5.ckpt")
         ricochet.run("s.yaml", "--resume", cwd=own, ranks=ranks[-1]).expect_done()
         assert name == "killed" or finished or run_attributes(own / "s.h5")["tasks_resumed"] == done

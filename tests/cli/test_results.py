@@ -2,6 +2,7 @@
 
 import csv
 import io
+import os
 import re
 
 import h5py
@@ -586,3 +587,29 @@ def test_turning_the_ring_turns_the_orbit(ricochet, folder):
         for name in ("q", "v"):
             assert np.allclose(np.roll(a["orbits"][name][()], 4 - 15, axis=1), b["orbits"][name][()], atol=1e-12), name
         assert np.allclose(a["orbits/energy"][()], b["orbits/energy"][()], rtol=1e-13)
+
+
+# --- memory ---
+
+
+def test_an_old_result_is_not_read_before_it_is_replaced(ricochet, folder):
+    """One of 1 GB, most of it a hole."""
+    write(folder, "s.yaml", study(at_start="[15]", sweep=sweep(20)))
+    with (folder / "s.h5").open("wb") as old:
+        old.truncate(1 << 30)
+    process = ricochet.start_run("s.yaml", "--force", cwd=folder)
+    _, status, usage = os.wait4(process.pid, 0)
+    process.returncode = os.waitstatus_to_exitcode(status)
+    assert process.returncode == 0 and usage.ru_maxrss < 500_000, usage
+
+
+# --- size ---
+
+
+def test_texts_are_as_wide_as_the_longest_one(ricochet, folder):
+    for name, gammas in (("some", [0.1, 0.25, 0.3]), ("none", [0.05, 0.1])):
+        path = run(ricochet, folder, study(at_start="[15]", sweep=f"{{parameter: model.gamma, values: {gammas}}}"), name=name)
+        with h5py.File(path) as file:
+            reasons = file["orbits/reason"]
+            assert reasons.dtype.itemsize == max(1, *(len(text) for text in reasons[()].tolist()))
+            assert any(reasons[()]) == (name == "some")

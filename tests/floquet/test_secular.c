@@ -1,11 +1,10 @@
 /* The determinant behind the large chains, and what it takes. */
 #include "support.h"
 
-#include <complex.h>
-
 #include "floquet/determinant.h"
 #include "floquet/orbit_multipliers.h"
 #include "scenario/scenario.h"
+#include "numeric/complex_number.h"
 
 /* An orbit with its determinant and its reduced matrix. */
 typedef struct prepared {

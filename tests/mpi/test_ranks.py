@@ -135,3 +135,32 @@ def test_a_time_limit_reaches_a_rank_in_a_long_task_over_tcp(ricochet, folder):
     write(folder, "s.yaml", study(particles=8000000, orbit="states: false", sweep=sweep(200)))
     result = ricochet.run("s.yaml", "--max-time", "1s", cwd=folder, ranks=2, mpi=OVER_TCP)
     result.expect(STOPPED).expect_line("s.h5: ", "--max-time", "of 200 tasks", "--resume")
+
+
+# --- nothing between runs ---
+
+
+@pytest.mark.parametrize("ranks", [0, 2])
+def test_a_semaphore_that_somebody_left_holds_no_run_up(ricochet, folder, ranks):
+    """MPI-IO takes one that is named after the file, machine-wide; a rank that dies leaves it taken."""
+    name = f"{folder.name}.h5"
+    left = [Path(f"/dev/shm/sem.OMPIO_{name}{ending}") for ending in ("", ".tmp")]
+    write(folder, "s.yaml", study(particles=30, at_start="[15]", sweep=sweep(20)))
+    try:
+        for path in left:
+            path.write_bytes(bytes(32))
+            path.chmod(0o666)
+        ricochet.run("s.yaml", "-o", name, cwd=folder, ranks=ranks, limit=60).expect_done()
+    finally:
+        for path in left:
+            path.unlink(missing_ok=True)
+
+
+@pytest.mark.parametrize("ranks", [0, 2])
+def test_paths_of_results_may_be_long(ricochet, folder, ranks):
+    deep = folder / ("d" * 200) / ("e" * 200)
+    deep.mkdir(parents=True)
+    write(folder, "s.yaml", study(particles=30, at_start="[15]", sweep=sweep(20)))
+    name = "r" * 200 + ".h5"
+    ricochet.run("s.yaml", "-o", deep / name, cwd=folder, ranks=ranks).expect_done()
+    assert names(deep) == [name]

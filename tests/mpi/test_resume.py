@@ -3,6 +3,7 @@
 import os
 import signal
 import time
+from pathlib import Path
 
 import pytest
 from program import (
@@ -257,3 +258,15 @@ def test_resume_waits_for_the_holder_to_leave(ricochet, folder):
         os.kill(pid, signal.SIGKILL)
     ricochet.end(second).expect_done()
     expect_uninterrupted_result(ricochet, folder)
+
+
+@pytest.mark.parametrize("delay", [0.02, 0.05, 0.1, 0.2, 0.4])
+@pytest.mark.parametrize("mpi", ["on", "off"])
+def test_a_signal_is_heard_from_the_first_instant(ricochet, folder, mpi, delay):
+    """Also while MPI starts, which takes half a second."""
+    write(folder, "s.yaml", SLOW)
+    run = ricochet.start_run("s.yaml", "--mpi", mpi, cwd=folder)
+    wait_until(lambda: "libyaml" in Path(f"/proc/{run.pid}/maps").read_text(), "the program in memory")
+    time.sleep(delay)
+    run.send_signal(signal.SIGUSR1)
+    ricochet.end(run).expect(STOPPED)

@@ -2,6 +2,7 @@
 
 #include <errno.h>
 #include <stdarg.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -15,6 +16,23 @@ int refuse(message *why, int code, const char *format, ...) {
 
 int refuse_errno(const char *path, const char *what, message *why) {
   return refuse(why, EXIT_FILES, "%s: cannot %s: %s", path, what, strerror(errno));
+}
+
+void escape_text(const char *from, char *to, size_t size) {
+  size_t used = 0;
+  for (const unsigned char *at = (const unsigned char *)from; *at; at++) {
+    const bool second = *at == 0xc2 && at[1] >= 0x80 && at[1] < 0xa0; /* C1 in UTF-8: two bytes */
+    const bool control = *at < 0x20 || *at == 0x7f || second;
+    if (used + (control ? 4 : 1) >= size)
+      break;
+    at += second;
+    if (control)
+      used += (size_t)snprintf(to + used, size - used, "\\x%02x", *at);
+    else
+      to[used++] = (char)*at;
+  }
+  if (size > 0)
+    to[used] = '\0';
 }
 
 int flush_output(int code, message *why) {

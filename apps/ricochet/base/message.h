@@ -6,6 +6,8 @@
 #ifndef RICOCHET_APP_MESSAGE_H
 #define RICOCHET_APP_MESSAGE_H
 
+#include <stddef.h>
+
 /** Exit codes of the program. 0 is success, also when tasks have outcomes such as `failed`. */
 enum exit_code {
   EXIT_DONE = 0,
@@ -31,6 +33,10 @@ int refuse(message *why, int code, const char *format, ...) __attribute__((forma
 
 /** EXIT_FILES with "PATH: cannot WHAT: REASON", the reason being that of errno. */
 int refuse_errno(const char *path, const char *what, message *why);
+
+/** Copies text that somebody else wrote so that a terminal shows it and does not obey it: control characters, also
+ * those of UTF-8 (C1), as \x1b. @param to  [size], cut to fit */
+void escape_text(const char *from, char *to, size_t size);
 
 /** Flushes standard output. @returns `code`, or EXIT_FILES when that is 0 and something could not be printed */
 int flush_output(int code, message *why);

@@ -47,19 +47,27 @@ static int grow(rank *r, uint64_t tasks, message *why) {
   return 0;
 }
 
-/* Evaluates tasks into the rows from the `at`-th on. @returns 0, or -1 if the run was stopped */
-static int evaluate_batch(rank *r, task_range tasks, uint64_t at) {
+/* A row must not depend on the memory of the moment. */
+static int refuse_memory(task_range tasks, message *why) {
+  return refuse(why, EXIT_RUN, "no memory for task %llu; finished tasks are kept, --resume goes on",
+                (unsigned long long)tasks.first);
+}
+
+/* Evaluates tasks into the rows from the `at`-th on. @param stopped  set if the run was stopped */
+static int evaluate_batch(rank *r, task_range tasks, uint64_t at, int *stopped, message *why) {
   uint64_t before[KIND_MOST_TAILS], *counts = r->counts + at * r->plan->tail_count;
+  const unsigned long refusals = ric_memory_refusals();
   for (size_t k = 0; k < r->plan->tail_count; k++)
     before[k] = r->tails[k].count;
-  int stopped = poll_all(r) ||
-                r->kind->evaluate(r->worker, r->plan, tasks, r->rows + at * r->plan->rows.row_bytes, r->tails) != 0;
+  *stopped = poll_all(r) ||
+             r->kind->evaluate(r->worker, r->plan, tasks, r->rows + at * r->plan->rows.row_bytes, r->tails) != 0;
+  const int code = ric_memory_refusals() != refusals ? refuse_memory(tasks, why) : 0;
   for (size_t k = 0; k < r->plan->tail_count; k++) { /* of the one task */
-    if (stopped)
+    if (*stopped || code)
       records_cut(&r->tails[k], before[k]);
     counts[k] = r->tails[k].count - before[k];
   }
-  return stopped ? -1 : 0;
+  return code;
 }
 
 static double tail_bytes(const rank *r) {
@@ -86,22 +94,21 @@ static int evaluate_run(rank *r, uint64_t first, uint64_t count, int *stopped, m
   uint64_t finished = 0;
   for (uint64_t i = 0; !code && !*stopped && i < count;) {
     const uint64_t batch = count - i < r->batch ? count - i : r->batch;
-    if (evaluate_batch(r, (task_range){first + finished, batch}, finished) != 0)
-      *stopped = 1;
-    else
+    code = evaluate_batch(r, (task_range){first + finished, batch}, finished, stopped, why);
+    if (!code && !*stopped)
       finished += batch;
     i += batch;
-    if (finished == 0 || tail_bytes(r) < MOST_BYTES)
+    if (code || finished == 0 || tail_bytes(r) < MOST_BYTES)
       continue;
     code = append(r, first, finished, why);
     r->done += finished;
     first += finished;
     finished = 0;
   }
-  if (!code && finished > 0)
-    code = append(r, first, finished, why);
+  message later;
+  const int kept = finished > 0 ? append(r, first, finished, code ? &later : why) : 0;
   r->done += finished;
-  return code;
+  return code ? code : kept;
 }
 
 /* A chunk of missing tasks: one or more runs of consecutive ones. */

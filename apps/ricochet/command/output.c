@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "../base/file_kind.h"
 #include "../result/result.h"
 #include "../run/checkpoint.h"
 #include "../run/ranks.h"
@@ -16,11 +17,6 @@ static void stem_of(const char *path, char *stem, size_t size) {
   const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path, *dot = strrchr(name, '.');
   size_t length = dot && dot != name ? (size_t)(dot - name) : strlen(name);
   snprintf(stem, size, "%.*s", (int)(length < size ? length : size - 1), name);
-}
-
-static bool is_folder(const char *path) {
-  struct stat there;
-  return stat(path, &there) == 0 && S_ISDIR(there.st_mode);
 }
 
 static bool is_same_file(const char *a, const char *b) {
@@ -38,10 +34,16 @@ int output_name(output *out, const run_options *o, message *why) {
     return refuse(why, EXIT_USAGE, "-o: a path of %d bytes, expected 1 to 3999", length);
   if (is_same_file(out->path, o->study_path))
     return refuse(why, EXIT_USAGE, "%s: the output would replace the study itself; use -o for another name", out->path);
-  if (is_folder(out->path))
-    return refuse(why, EXIT_USAGE, "%s: is a folder, expected the name of a file", out->path);
   snprintf(out->folder, sizeof out->folder, "%s.ckpt", out->path);
   return 0;
+}
+
+/* Nothing but a result, its checkpoint and what a killed run left of a result is ever replaced or removed. */
+static int check_names(const output *out, message *why) {
+  int code = file_kind_expect(out->path, FILE_REGULAR, why);
+  if (!code)
+    code = file_kind_expect(out->folder, FILE_FOLDER, why);
+  return code ? code : result_check_partial(out->path, why);
 }
 
 static bool exists(const char *path) {
@@ -78,9 +80,12 @@ static int check_existing(const output *out, const run_options *o, message *why)
 }
 
 int output_claim(output *out, const run_options *o, message *why) {
-  if (!o->force && !o->resume && exists(out->path)) /* before a folder is made for the lock */
-    return refuse_existing(out, why);
-  int code = lock_take(out->folder, o->resume ? 10 : 0, &out->lock, why);
+  int code = check_names(out, why);
+  if (!code && !o->force && !o->resume && exists(out->path)) /* before a folder is made for the lock */
+    code = refuse_existing(out, why);
+  if (code)
+    return code;
+  code = lock_take(out->folder, o->resume ? 10 : 0, &out->lock, why);
   if (!code)
     code = check_existing(out, o, why);
   if (code)

@@ -29,6 +29,8 @@ static const char help[] =
     "Exit codes: 0 done (the last line counts the outcomes of the tasks), 1 the run cannot go on, 2 bad usage or\n"
     "study, 3 cannot read or write, 75 stopped by SIGUSR1 or --max-time: --resume goes on.\n";
 
+enum { MOST_TABLES = 2 + KIND_MOST_TAILS + KIND_MOST_EXTRAS };
+
 /* The state of a run on one rank. */
 typedef struct run {
   run_options options;
@@ -112,7 +114,7 @@ static int read_done(void *user, uint64_t first, uint64_t count, unsigned char *
   return checkpoint_read(r->checkpoint, first, count, rows, why);
 }
 
-/* Rows for the writer; also counts the outcomes. */
+/* The same for the writer; also counts the outcomes. */
 static int read_rows(void *user, uint64_t first, uint64_t count, unsigned char *rows, message *why) {
   run *r = user;
   const column *outcome = table_column(&r->plan.rows, "outcome");
@@ -173,7 +175,7 @@ static int check_lock(void *user, message *why) {
 static size_t list_tables(run *r, result_table *tables, tail_source *tails) {
   const uint64_t tasks = study_tasks(r->study);
   size_t count = 0;
-  tables[count++] = (result_table){.layout = &r->plan.rows, .rows = tasks, .read = read_rows, .user = r};
+  tables[count++] = (result_table){.layout = &r->plan.rows, .rows = tasks, .read = read_done, .user = r};
   if (r->plan.tail_count > 0) {
     lay_out_offsets(r);
     tables[count++] = (result_table){.layout = &r->offsets, .rows = tasks + 1, .read = read_offsets, .user = r};
@@ -206,10 +208,18 @@ static int write_result(run *r, message *why) {
                           .ranks = ranks_count(),
                           .tasks_computed = r->computed.computed,
                           .tasks_resumed = r->resumed};
-  result_table tables[2 + KIND_MOST_TAILS + KIND_MOST_EXTRAS];
+  result_table tables[MOST_TABLES];
   tail_source tails[KIND_MOST_TAILS];
   size_t count = list_tables(r, tables, tails);
-  return result_write(r->output.path, &header, tables, count, check_lock, r, why);
+  table *stored = calloc(count, sizeof *stored);
+  int code = ranks_agree(stored ? 0 : refuse(why, EXIT_RUN, "%s: no memory for its tables", r->output.path), why);
+  if (!code)
+    code = fit_texts(tables, count, stored, why);
+  tables[0].read = read_rows;
+  if (!code)
+    code = result_write(r->output.path, &header, tables, count, check_lock, r, why);
+  free(stored);
+  return code;
 }
 
 static int poll_stop(void *user) {
@@ -234,6 +244,16 @@ static int agree_on_entries(run *r, message *why) {
   return ranks_agree(code, why);
 }
 
+/* What tables there are besides those of the tasks, all of it or none. */
+static int find_extras(run *r, const row_source *done, message *why) {
+  const unsigned long refusals = ric_memory_refusals();
+  const int code = r->kind->extra(r->study, &r->plan, done, (ric_poll){.call = poll_stop}, r->extras, why);
+  if (code || ric_memory_refusals() == refusals)
+    return code;
+  return refuse(why, EXIT_RUN, "%s: no memory for what follows the tasks; all of them are kept, --resume goes on",
+                r->output.path);
+}
+
 /* Everything after the tasks: their rows into the result. */
 static int assemble(run *r, message *why) {
   ranks_barrier();
@@ -251,7 +271,7 @@ static int assemble(run *r, message *why) {
     code = agree_on_entries(r, why);
   const row_source done = {.read = read_done, .user = r};
   if (!code)
-    code = ranks_agree(r->kind->extra(r->study, &r->plan, &done, (ric_poll){.call = poll_stop}, r->extras, why), why);
+    code = ranks_agree(find_extras(r, &done, why), why);
   if (!code)
     code = write_result(r, why);
   ranks_sum(r->outcomes, 64);

@@ -63,6 +63,13 @@ int output_join(output *out, message *why);
 /** Collective: releases the lock. @param drop  also removes the checkpoint and its folder */
 void output_release(output *out, bool drop);
 
+/* --- texts.c --- */
+
+/** Collective. Gives tables with text columns layouts in which these are as wide as their longest text, so that a
+ * result of a million tasks without a reason has none. Reads all rows of such tables once.
+ *  @param stored  [count] room for the layouts, which `tables` then refer to */
+int fit_texts(result_table *tables, size_t count, table *stored, message *why);
+
 /* --- compute.c: the loop of one rank: takes chunks of missing tasks, evaluates them, appends them to the checkpoint.
  */
 

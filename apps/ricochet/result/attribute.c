@@ -157,7 +157,7 @@ int attribute_text_into(const file_place *at, hid_t object, const char *name, ch
   char *whole;
   int code = attribute_text(at, object, name, &whole);
   if (!code)
-    snprintf(text, size, "%s", whole);
+    escape_text(whole, text, size);
   free(whole);
   return code;
 }

@@ -11,7 +11,8 @@
 
 #include "../base/message.h"
 
-/** Keeps HDF5 from printing its error stack. Called by every entry point of this room. */
+/** Keeps HDF5 from printing its error stack, and from acting at exit. Called by every entry point of this room before
+ * all other calls of HDF5. */
 void hdf5_quiet(void);
 
 /** Formats "PATH: cannot WHAT: REASON", the reason being HDF5's innermost description of its last failure.

@@ -61,6 +61,12 @@ out:
 
 /* --- names --- */
 
+static bool has_controls(const char *name) {
+  char shown[4096];
+  escape_text(name, shown, sizeof shown);
+  return strcmp(shown, name) != 0;
+}
+
 static int link_name(const file_place *at, hid_t group, hsize_t i, char **name) {
   ssize_t length = H5Lget_name_by_idx(group, ".", H5_INDEX_CRT_ORDER, H5_ITER_INC, i, NULL, 0, H5P_DEFAULT);
   if (length < 0)
@@ -68,9 +74,13 @@ static int link_name(const file_place *at, hid_t group, hsize_t i, char **name) 
   *name = malloc((size_t)length + 1);
   if (!*name)
     return refuse(at->why, EXIT_RUN, "%s: out of memory", at->path);
-  if (H5Lget_name_by_idx(group, ".", H5_INDEX_CRT_ORDER, H5_ITER_INC, i, *name, (size_t)length + 1, H5P_DEFAULT) >= 0)
+  int code = 0;
+  if (H5Lget_name_by_idx(group, ".", H5_INDEX_CRT_ORDER, H5_ITER_INC, i, *name, (size_t)length + 1, H5P_DEFAULT) < 0)
+    code = hdf5_refuse(at, "list it");
+  else if (has_controls(*name))
+    code = refuse(at->why, EXIT_FILES, "%s: the name of an object in it has control characters", at->path);
+  else
     return 0;
-  int code = hdf5_refuse(at, "list it");
   free(*name);
   return code;
 }
@@ -126,8 +136,10 @@ static int read_words(const file_place *at, reader_set *s) {
     char *word = H5Tget_member_name(s->memory, i);
     if (!word || H5Tget_member_value(s->memory, i, &value) < 0)
       return hdf5_refuse(at, "read the words of %s", s->name);
+    char shown[256];
+    escape_text(word, shown, sizeof shown);
     if (value >= 0 && !s->words[value])
-      s->words[value] = strdup(word);
+      s->words[value] = strdup(shown);
     if (H5free_memory(word) < 0)
       return hdf5_refuse(at, "read the words of %s", s->name);
   }
@@ -183,6 +195,27 @@ out:
   return hdf5_close(at, type, code);
 }
 
+static uint64_t file_bytes_of(hid_t set) {
+  hsize_t bytes = 0;
+  const hid_t file = H5Iget_file_id(set);
+  if (file < 0 || H5Fget_filesize(file, &bytes) < 0)
+    bytes = 0;
+  (void)H5Fclose(file);
+  return bytes;
+}
+
+int reader_check_extent(const file_place *at, reader_handle set, const char *name, int rank, const uint64_t *shape,
+                        size_t value_bytes) {
+  enum { TIGHTEST = 1032 };
+  uint64_t bytes = value_bytes, most;
+  bool fits = !__builtin_mul_overflow(file_bytes_of(set), TIGHTEST, &most);
+  for (int i = 0; i < rank; i++)
+    fits = fits && (shape[i] == 0 || !__builtin_mul_overflow(bytes, shape[i], &bytes));
+  if (fits && bytes <= most)
+    return 0;
+  return refuse(at->why, EXIT_FILES, "%s: damaged: %s claims more values than the file can hold", at->path, name);
+}
+
 static int read_shape(const file_place *at, reader_set *s) {
   int code = 0;
   hid_t space = H5I_INVALID_HID;
@@ -191,6 +224,7 @@ static int read_shape(const file_place *at, reader_set *s) {
   HDF5_TRY(at, s->rank = H5Sget_simple_extent_dims(space, shape, NULL), "read the shape of %s", s->name);
   for (int i = 0; i < s->rank; i++)
     s->shape[i] = shape[i];
+  code = reader_check_extent(at, s->id, s->name, s->rank, s->shape, s->value_bytes);
 out:
   return hdf5_close(at, space, code);
 }
@@ -373,6 +407,11 @@ void reader_part(const reader_set *s, const unsigned char *value, int part, int 
 void reader_value(const reader_set *s, const unsigned char *value, int digits, char *text, size_t size) {
   char imaginary[64];
   reader_part(s, value, 0, digits, text, size);
+  if (s->type == READER_TEXT) {
+    char whole[1024];
+    snprintf(whole, sizeof whole, "%s", text);
+    escape_text(whole, text, size);
+  }
   if (s->type != READER_COMPLEX)
     return;
   reader_part(s, value, 1, digits, imaginary, sizeof imaginary);

@@ -52,6 +52,10 @@ typedef struct result_header {
   uint64_t tasks_computed, tasks_resumed;
 } result_header;
 
+/** Refuses a path whose temporary name, `path`.tmp, is taken by anything but the beginning of a result that a killed
+ * run left. @returns 0 or EXIT_USAGE */
+int result_check_partial(const char *path, message *why);
+
 /** Collective over all ranks: writes `path`.tmp, re-opens and verifies it, syncs, and, when `commit` agrees on rank 0,
  *  renames it to `path` and syncs the folder. On any failure the temporary file is removed and all ranks return the
  *  same code with the same message, that of the lowest rank that failed.

@@ -20,16 +20,22 @@ enum {
 /* --- the file as a whole --- */
 
 static int show_line(const file_place *at, hid_t object, const char *label, const char *attribute) {
-  char *text;
+  char *text, *shown = NULL;
   int code = attribute_text(at, object, attribute, &text);
+  const size_t size = code ? 0 : 4 * strlen(text) + 5;
+  if (!code && !(shown = malloc(size)))
+    code = refuse(at->why, EXIT_RUN, "%s: out of memory", at->path);
+  if (!code)
+    escape_text(text, shown, size);
   if (!code && text[0])
-    printf("%-10s %s\n", label, text);
+    printf("%-10s %s\n", label, shown);
+  free(shown);
   free(text);
   return code;
 }
 
 static int show_heading(const file_place *at, hid_t file) {
-  char version[64], time[64], sha[64], *compiler = NULL;
+  char version[64], time[64], sha[64], compiler[256];
   int64_t layout;
   int code = attribute_text_into(at, file, "creator_version", version, sizeof version);
   if (!code)
@@ -39,7 +45,7 @@ static int show_heading(const file_place *at, hid_t file) {
   if (!code)
     code = attribute_integer(at, file, "schema_version", &layout);
   if (!code)
-    code = attribute_text(at, file, "compiler", &compiler);
+    code = attribute_text_into(at, file, "compiler", compiler, sizeof compiler);
   if (!code) {
     printf("%s: result of ricochet %s (schema %" PRId64 "), %s\n", at->path, version, layout, time);
     code = show_line(at, file, "title", "title");
@@ -48,7 +54,6 @@ static int show_heading(const file_place *at, hid_t file) {
     code = show_line(at, file, "command", "command");
   if (!code)
     printf("%-10s %s, %s\n", "built", sha, compiler);
-  free(compiler);
   return code ? code : show_line(at, file, "with", "libraries");
 }
 

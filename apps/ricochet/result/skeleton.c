@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "attribute.h"
+#include "chunks.h"
 #include "data_set.h"
 #include "verify.h"
 
@@ -292,6 +293,9 @@ static herr_t user_keep(void *user) {
   return 0;
 }
 
+/* HDF5 opens a file of the given name, if there is one, and the memory driver reads it whole. */
+static const char no_file[] = "/dev/null/image";
+
 static int create_in_memory(const file_place *at, skeleton_image *image, hid_t *file) {
   int code = 0;
   hid_t access = H5I_INVALID_HID, list = H5I_INVALID_HID;
@@ -302,7 +306,7 @@ static int create_in_memory(const file_place *at, skeleton_image *image, hid_t *
   HDF5_TRY(at, H5Pset_fapl_core(access, GROWTH, false), "make its image");
   HDF5_TRY(at, H5Pset_file_image_callbacks(access, &callbacks), "make its image");
   HDF5_TRY(at, list = group_properties(H5P_FILE_CREATE), "make its image");
-  HDF5_TRY(at, *file = H5Fcreate(at->path, H5F_ACC_TRUNC, list, access), "make its image");
+  HDF5_TRY(at, *file = H5Fcreate(no_file, H5F_ACC_TRUNC, list, access), "make its image");
 out:
   code = hdf5_close(at, list, code);
   return hdf5_close(at, access, code);
@@ -345,7 +349,7 @@ static int reserve(int handle, uint64_t bytes) {
 }
 
 static int write_image(const plan *p, const file_place *at, const skeleton_image *image) {
-  int handle = open(p->partial, O_RDWR | O_CREAT | O_TRUNC, 0666);
+  int handle = open(p->partial, O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
   if (handle < 0)
     return refuse(at->why, EXIT_FILES, "%s: cannot create it: %s", at->path, strerror(errno));
   uint64_t total = image->size + plan_bytes(p);
@@ -363,45 +367,53 @@ static int write_image(const plan *p, const file_place *at, const skeleton_image
 /* --- layout of the chunks --- */
 
 /* The first write to a data set allocates all its chunks; one value is enough. */
-static int touch(const file_place *at, hid_t file, const table *t, const column *c) {
+static int touch(const file_place *at, hid_t set, const char *name, const column *c) {
   int code = 0;
-  hid_t set = H5I_INVALID_HID, in_file = H5I_INVALID_HID, in_memory = H5I_INVALID_HID, type = H5I_INVALID_HID;
-  char name[512];
+  hid_t in_file = H5I_INVALID_HID, in_memory = H5I_INVALID_HID, type = H5I_INVALID_HID;
   const hsize_t first[PLAN_MOST_AXES] = {0}, one[PLAN_MOST_AXES] = {1, 1, 1};
   unsigned char *zero = calloc(1, column_value_bytes(c));
   if (!zero)
     return refuse(at->why, EXIT_RUN, "%s: out of memory", at->path);
-  snprintf(name, sizeof name, "/%s/%s", t->group, c->name);
-  HDF5_TRY(at, set = H5Dopen2(file, name, H5P_DEFAULT), "lay out %s", name);
   HDF5_TRY(at, type = data_set_type(c), "lay out %s", name);
   HDF5_TRY(at, in_file = H5Dget_space(set), "lay out %s", name);
   HDF5_TRY(at, H5Sselect_hyperslab(in_file, H5S_SELECT_SET, first, NULL, one, NULL), "lay out %s", name);
   HDF5_TRY(at, in_memory = H5Screate_simple(1, one, NULL), "lay out %s", name);
   HDF5_TRY(at, H5Dwrite(set, type, in_memory, in_file, H5P_DEFAULT, zero), "lay out %s", name);
+  HDF5_TRY(at, H5Dflush(set), "lay out %s", name);
 out:
   code = hdf5_close(at, in_memory, code);
   code = hdf5_close(at, in_file, code);
   code = hdf5_close(at, type, code);
-  code = hdf5_close(at, set, code);
   free(zero);
   return code;
 }
 
-static int touch_table(const file_place *at, hid_t file, const result_table *t) {
+/* Allocates the chunks of data set number `set`, and finds them. */
+static int lay_out_set(const file_place *at, hid_t file, const result_table *t, const column *c, uint64_t set,
+                       chunk_places *places) {
   int code = 0;
-  for (size_t k = 0; !code && k < t->layout->column_count; k++)
-    if (t->rows > 0 && column_values(&t->layout->columns[k]) > 0)
-      code = touch(at, file, t->layout, &t->layout->columns[k]);
-  return code;
+  hid_t data_set = H5I_INVALID_HID;
+  const chunk_grid g = chunk_grid_of(t, c);
+  char name[512];
+  snprintf(name, sizeof name, "/%s/%s", t->layout->group, c->name);
+  HDF5_TRY(at, data_set = H5Dopen2(file, name, H5P_DEFAULT), "lay out %s", name);
+  code = touch(at, data_set, name, c);
+  if (!code)
+    code = chunks_find(places, at, data_set, set, &g);
+out:
+  return hdf5_close(at, data_set, code);
 }
 
-static int lay_out_chunks(const plan *p, const file_place *at, const skeleton_image *image) {
+static int lay_out_chunks(const plan *p, const file_place *at, const skeleton_image *image, chunk_places *places) {
   int code = 0;
+  uint64_t set = 0;
   hid_t access = H5I_INVALID_HID, file = H5I_INVALID_HID;
   HDF5_TRY(at, access = skeleton_access(), "lay it out");
   HDF5_TRY(at, file = H5Fopen(p->partial, H5F_ACC_RDWR, access), "lay it out");
-  for (size_t i = 0; !code && i < p->table_count; i++)
-    code = touch_table(at, file, &p->tables[i]);
+  for (size_t i = 0; i < p->table_count; i++)
+    for (size_t k = 0; !code && k < p->tables[i].layout->column_count; k++, set++)
+      if (p->tables[i].rows > 0 && column_values(&p->tables[i].layout->columns[k]) > 0)
+        code = lay_out_set(at, file, &p->tables[i], &p->tables[i].layout->columns[k], set, places);
   if (!code)
     code = heap_put_checksums(at, file, image);
 out:
@@ -409,13 +421,13 @@ out:
   return hdf5_close(at, access, code);
 }
 
-int space_create(const plan *p, const file_place *at) {
+int space_create(const plan *p, const file_place *at, chunk_places *places) {
   skeleton_image image;
   int code = skeleton_make(p, at, &image);
   if (!code)
     code = write_image(p, at, &image);
   if (!code)
-    code = lay_out_chunks(p, at, &image);
+    code = lay_out_chunks(p, at, &image, places);
   free(image.bytes);
   return code;
 }

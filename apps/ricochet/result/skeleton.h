@@ -2,6 +2,7 @@
 #ifndef RICOCHET_APP_SKELETON_H
 #define RICOCHET_APP_SKELETON_H
 
+#include "chunks.h"
 #include "hdf5_call.h"
 #include "plan.h"
 
@@ -17,13 +18,13 @@ hid_t skeleton_access(void);
 
 /* The result file on the disk before its rows are written: skeleton, and space for everything.
  *
- * HDF5 fails badly on a full disk: a close that cannot flush leaves a broken handle, which crashes the process when
- * MPI_Finalize shuts HDF5 down, and in parallel the other ranks wait forever. HDF5 therefore never allocates space on
- * the disk: the skeleton is made in memory and written as plain bytes, and the file system reserves all the space of
- * the result. A full disk, a quota or a limit on the file's size appears there, in calls that fail cleanly. Then HDF5
- * allocates all chunks, so that ranks only overwrite bytes of rows and change no metadata. */
+ * HDF5 fails badly on a full disk: a close that cannot flush leaves a broken handle. HDF5 therefore never allocates
+ * space on the disk: the skeleton is made in memory and written as plain bytes, and the file system reserves all the
+ * space of the result. A full disk, a quota or a limit on the file's size appears there, in calls that fail cleanly.
+ * Then HDF5 allocates all chunks, which ranks overwrite. */
 
-/** Creates `p->partial` on this process alone, all data sets laid out and filled with zeros. */
-int space_create(const plan *p, const file_place *at);
+/** Creates `p->partial` on this process alone, all data sets laid out and filled with zeros, and finds their chunks.
+ *  @param places  zeroed */
+int space_create(const plan *p, const file_place *at, chunk_places *places);
 
 #endif

@@ -5,12 +5,12 @@
 #include "hdf5_call.h"
 #include "skeleton.h"
 
-/** Part of the verification of a file, so that several processes can share the reading: process `part` of `parts`
- *  checks all metadata (data sets chunked with a checksum, every axis attached to its scale) and reads every
- *  `parts`-th slab of data.
+/** Checks a file: all metadata (data sets chunked with a checksum, every axis attached to its scale), and the data of
+ * the axes and of all tables, read through their checksums.
  *  @param path  of the file to open; `at` names the one for messages
- *  @param expected  what the file must hold at least, by name and shape; NULL if unknown */
-int verify_part(const file_place *at, const char *path, const plan *expected, int part, int parts);
+ *  @param expected  the plan that it was written by: data sets must have its shapes, and the rows of tables, which
+ *         rows_check has read, are not read again; NULL if unknown */
+int verify_file(const file_place *at, const char *path, const plan *expected);
 
 /** Stores the digest of the attributes of /study, which is complete, in the root attribute `study_values_checksum`. */
 int study_put_checksum(const file_place *at, hid_t file);

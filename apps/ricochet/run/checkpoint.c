@@ -156,7 +156,7 @@ static int append_pieces(checkpoint *c, struct iovec *pieces, int count, message
 int checkpoint_begin(checkpoint *c, int rank, message *why) {
   part_path(c->folder, c->generation, (unsigned)rank, c->own_path);
   /* O_EXCL: a file of this name would belong to another run, which the lock excludes. */
-  c->own_fd = open(c->own_path, O_CREAT | O_EXCL | O_WRONLY | O_APPEND | O_CLOEXEC, 0666);
+  c->own_fd = open(c->own_path, O_CREAT | O_EXCL | O_NOFOLLOW | O_WRONLY | O_APPEND | O_CLOEXEC, 0666);
   if (c->own_fd < 0)
     return refuse_errno(c->own_path, "create", why);
   part_header header = {.magic = PART_MAGIC, .format = PART_FORMAT, .identity = c->identity};

@@ -25,7 +25,7 @@ int open_part(checkpoint *c, size_t number, message *why) {
     close(c->read_fd);
   char path[PATH_MAX];
   path_of(c, number, path);
-  c->read_fd = open(path, O_RDONLY | O_CLOEXEC);
+  c->read_fd = open(path, O_RDONLY | O_NOFOLLOW | O_CLOEXEC);
   c->read_part = number;
   return c->read_fd >= 0 ? 0 : refuse_errno(path, "open", why);
 }

@@ -94,7 +94,7 @@ static attempt try_whole(lock *l, char *holder, size_t size, message *why) {
     refuse_errno(l->folder, "create the folder", why);
     return IMPOSSIBLE;
   }
-  l->fd = open(l->path, O_CREAT | O_RDWR | O_CLOEXEC, 0666);
+  l->fd = open(l->path, O_CREAT | O_RDWR | O_NOFOLLOW | O_CLOEXEC, 0666);
   if (l->fd < 0) {
     if (errno == ENOENT) /* its last holder removed the folder since the mkdir */
       return REPLACED;
@@ -149,7 +149,7 @@ int lock_take(const char *folder, double wait_seconds, lock **out, message *why)
 }
 
 static int join(lock *l, int rank, message *why) {
-  l->fd = open(l->path, O_RDWR | O_CLOEXEC);
+  l->fd = open(l->path, O_RDWR | O_NOFOLLOW | O_CLOEXEC);
   if (l->fd < 0)
     return refuse_errno(l->path, "open", why);
   if (set_lock(l, F_WRLCK, rank, 1)) {

@@ -45,6 +45,11 @@ RIC_API ric_status ric_fail(ric_error *error, ric_status status, const char *for
 #endif
     ;
 
+/** How often calls of this thread have met RIC_ENOMEM so far, also where the result says it in another way: as an
+ * outcome, a verdict, an edge that was not found. A caller whose results must not depend on the memory of the moment
+ * compares the number before and after. */
+RIC_API unsigned long ric_memory_refusals(void);
+
 /** Returns the status of a failed call to the caller; for functions that own nothing. */
 #define RIC_TRY(call)                                                                                                  \
   do {                                                                                                                 \

@@ -1,0 +1,194 @@
+#include "rows.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "../base/digest.h"
+#include "data_set.h"
+
+/* One block of rows of a table, and one column of it. */
+typedef struct block {
+  const file_place *at;
+  const result_table *from;
+  uint64_t height;       /* rows */
+  unsigned char *rows;   /* [height][row_bytes] */
+  unsigned char *values; /* [height][values] of one column */
+  unsigned char *chunk;  /* the largest of a column, with its checksum */
+} block;
+
+static int block_allocate(block *b, const file_place *at, const result_table *from) {
+  const table *layout = from->layout;
+  size_t widest = 1, chunk = 1;
+  *b = (block){.at = at, .from = from, .height = plan_block_rows(layout)};
+  for (size_t k = 0; k < layout->column_count; k++) {
+    const chunk_grid g = chunk_grid_of(from, &layout->columns[k]);
+    if (column_bytes(&layout->columns[k]) > widest)
+      widest = column_bytes(&layout->columns[k]);
+    if (g.bytes > chunk)
+      chunk = g.bytes;
+  }
+  const uint64_t height = b->height < from->rows ? b->height : from->rows;
+  b->rows = malloc(height * layout->row_bytes + 1);
+  b->values = malloc(height * widest + 1);
+  b->chunk = malloc(chunk + sizeof(uint32_t));
+  if (b->rows && b->values && b->chunk)
+    return 0;
+  return refuse(at->why, EXIT_RUN, "%s: out of memory for %llu rows of %zu bytes", at->path, (unsigned long long)height,
+                layout->row_bytes);
+}
+
+static void block_clear(block *b) {
+  free(b->rows);
+  free(b->values);
+  free(b->chunk);
+}
+
+static uint64_t rows_from(const block *b, uint64_t first) {
+  return b->from->rows - first < b->height ? b->from->rows - first : b->height;
+}
+
+static bool is_stored(const result_table *t, const column *c) {
+  return t->rows > 0 && column_values(c) > 0;
+}
+
+/* --- writing --- */
+
+/* The file that rows are written to. */
+typedef struct row_file {
+  const chunk_places *places;
+  records *written;
+  int handle;
+} row_file;
+
+/* Gathers a column from the rows of a block. */
+static void unpack(const block *b, const column *c, uint64_t count) {
+  const size_t bytes = column_bytes(c), row_bytes = b->from->layout->row_bytes;
+  for (uint64_t i = 0; i < count; i++)
+    memcpy(b->values + i * bytes, b->rows + i * row_bytes + c->offset, bytes);
+}
+
+static int remember(const block *b, records *written, const column *c, uint64_t count) {
+  const uint64_t digest = digest_words(b->values, count * column_bytes(c));
+  unsigned char *added = records_add(written);
+  if (!added)
+    return refuse(b->at->why, EXIT_RUN, "%s: out of memory", b->at->path);
+  memcpy(added, &digest, sizeof digest);
+  return 0;
+}
+
+static int write_column(const block *b, const row_file *f, const column *c, uint64_t set, uint64_t first,
+                        uint64_t count) {
+  const chunk_grid g = chunk_grid_of(b->from, c);
+  unpack(b, c, count);
+  const int failed = chunks_write(f->places, set, &g, f->handle, first, count, b->values, b->chunk);
+  if (failed)
+    return refuse(b->at->why, EXIT_FILES, "%s: cannot write /%s/%s: %s", b->at->path, b->from->layout->group, c->name,
+                  strerror(failed));
+  return remember(b, f->written, c, count);
+}
+
+static int write_block(const block *b, const row_file *f, uint64_t first_set, uint64_t first) {
+  const result_table *from = b->from;
+  const uint64_t count = rows_from(b, first);
+  int code = from->read(from->user, first, count, b->rows, b->at->why);
+  for (size_t k = 0; !code && k < from->layout->column_count; k++)
+    if (is_stored(from, &from->layout->columns[k]))
+      code = write_column(b, f, &from->layout->columns[k], first_set + k, first, count);
+  return code;
+}
+
+int rows_write(const plan *p, const chunk_places *places, const file_place *at, records *written, int rank, int ranks) {
+  uint64_t set = 0;
+  const row_file f = {places, written, open(p->partial, O_WRONLY | O_NOFOLLOW | O_CLOEXEC)};
+  if (f.handle < 0)
+    return refuse_errno(at->path, "open it", at->why);
+  int code = 0;
+  written->record_bytes = sizeof(uint64_t);
+  for (size_t i = 0; !code && i < p->table_count; i++) {
+    block b;
+    code = block_allocate(&b, at, &p->tables[i]);
+    for (uint64_t k = (uint64_t)rank; !code && k * b.height < b.from->rows; k += (uint64_t)ranks)
+      code = write_block(&b, &f, set, k * b.height);
+    set += p->tables[i].layout->column_count;
+    block_clear(&b);
+  }
+  if (!code && fsync(f.handle) != 0) /* other nodes can read the rows after this */
+    code = refuse_errno(at->path, "sync it", at->why);
+  if (close(f.handle) != 0 && !code)
+    code = refuse_errno(at->path, "close it", at->why);
+  return code;
+}
+
+/* --- reading back --- */
+
+static int read_column(const block *b, hid_t set, const column *c, uint64_t first, uint64_t count) {
+  int code = 0;
+  const char *group = b->from->layout->group;
+  const hsize_t start[PLAN_MOST_AXES] = {first};
+  hsize_t size[PLAN_MOST_AXES];
+  const int axes = data_set_shape(c, count, size);
+  hid_t in_file = H5I_INVALID_HID, in_memory = H5I_INVALID_HID, type = H5I_INVALID_HID;
+  HDF5_TRY(b->at, type = data_set_type(c), "read /%s/%s", group, c->name);
+  HDF5_TRY(b->at, in_file = H5Dget_space(set), "read /%s/%s", group, c->name);
+  HDF5_TRY(b->at, H5Sselect_hyperslab(in_file, H5S_SELECT_SET, start, NULL, size, NULL), "read /%s/%s", group, c->name);
+  HDF5_TRY(b->at, in_memory = H5Screate_simple(axes, size, NULL), "read /%s/%s", group, c->name);
+  HDF5_TRY(b->at, H5Dread(set, type, in_memory, in_file, H5P_DEFAULT, b->values), "read /%s/%s", group, c->name);
+out:
+  code = hdf5_close(b->at, in_memory, code);
+  code = hdf5_close(b->at, in_file, code);
+  return hdf5_close(b->at, type, code);
+}
+
+/* Digests come in the order in which they were made. */
+static int check_column(const block *b, hid_t set, const column *c, uint64_t first, uint64_t digest) {
+  const uint64_t count = rows_from(b, first);
+  int code = read_column(b, set, c, first, count);
+  if (!code && digest_words(b->values, count * column_bytes(c)) != digest)
+    code = refuse(b->at->why, EXIT_FILES, "%s: /%s/%s does not hold what was written, from row %llu on", b->at->path,
+                  b->from->layout->group, c->name, (unsigned long long)first);
+  return code;
+}
+
+static int check_table(const block *b, hid_t file, const records *written, uint64_t *next, int rank, int ranks) {
+  int code = 0;
+  const table *layout = b->from->layout;
+  hid_t sets[TABLE_MAX_COLUMNS];
+  for (size_t k = 0; k < layout->column_count; k++)
+    sets[k] = H5I_INVALID_HID;
+  for (size_t k = 0; k < layout->column_count; k++) {
+    char name[512];
+    snprintf(name, sizeof name, "/%s/%s", layout->group, layout->columns[k].name);
+    HDF5_TRY(b->at, sets[k] = H5Dopen2(file, name, H5P_DEFAULT), "open %s", name);
+  }
+  for (uint64_t i = (uint64_t)rank; i * b->height < b->from->rows; i += (uint64_t)ranks)
+    for (size_t k = 0; !code && k < layout->column_count; k++)
+      if (is_stored(b->from, &layout->columns[k])) {
+        uint64_t digest;
+        memcpy(&digest, written->bytes + (*next)++ * sizeof digest, sizeof digest);
+        code = check_column(b, sets[k], &layout->columns[k], i * b->height, digest);
+      }
+out:
+  for (size_t k = 0; k < layout->column_count; k++)
+    code = hdf5_close(b->at, sets[k], code);
+  return code;
+}
+
+int rows_check(const plan *p, const file_place *at, const records *written, int rank, int ranks) {
+  int code = 0;
+  uint64_t next = 0;
+  hid_t file = H5I_INVALID_HID;
+  HDF5_TRY(at, file = H5Fopen(p->partial, H5F_ACC_RDONLY, H5P_DEFAULT), "open it");
+  for (size_t i = 0; !code && i < p->table_count; i++) {
+    block b;
+    code = block_allocate(&b, at, &p->tables[i]);
+    if (!code)
+      code = check_table(&b, file, written, &next, rank, ranks);
+    block_clear(&b);
+  }
+out:
+  return hdf5_close(at, file, code);
+}

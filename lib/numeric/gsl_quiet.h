@@ -1,0 +1,9 @@
+/* GSL's error handler, which ends the program when a call of GSL fails. */
+#ifndef RICOCHET_GSL_QUIET_H
+#define RICOCHET_GSL_QUIET_H
+
+/** Switches GSL's handler off, once in the life of the process: its calls then return their errors, which the library
+ *  turns into statuses. To switch it back would race with other threads. A handler that the caller sets later stays. */
+void keep_gsl_quiet(void);
+
+#endif
