@@ -59,6 +59,17 @@ def broken(name, group, rows, outcomes):
     return altered(name, change)
 
 
+def put_text(file, name, row, text):
+    """Another text in a row: texts are stored as wide as the longest."""
+    texts, attributes = file[name][()], dict(file[name].attrs)
+    texts = texts.astype(f"S{max(texts.dtype.itemsize, len(text))}")
+    texts[row] = text
+    del file[name]
+    file[name] = texts
+    kept = {key: value for key, value in attributes.items() if key not in ("DIMENSION_LIST", "REFERENCE_LIST")}
+    file[name].attrs.update(kept)
+
+
 # --- studies of orbits ---
 
 RING = """kind: orbits

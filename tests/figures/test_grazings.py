@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from album import assert_among, column
 from matplotlib.colors import to_rgba
-from shelf import altered
+from shelf import altered, put_text
 
 import ricochet
 from ricochet.plot import look
@@ -70,7 +70,7 @@ def no_direction(file):
 def undecided(file):
     """A c_0 that is zero within the tolerance."""
     file["grazing/verdict"][0] = 2
-    file["grazing/verdict_reason"][0] = b"c_0 is zero within $tolerance"
+    put_text(file, "grazing/verdict_reason", 0, b"c_0 is zero within $tolerance")
 
 
 MADE = {"still": altered("heavy", no_direction), "undecided": altered("heavy", undecided)}
