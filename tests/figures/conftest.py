@@ -8,7 +8,7 @@ import pytest
 
 HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE.parent.parent / "scripts"), str(HERE)]
-pytest.register_assert_rewrite("album")
+pytest.register_assert_rewrite("album", "both")
 
 from album import Album  # noqa: E402  # behind the path to it
 from shelf import Shelf, computed  # noqa: E402
@@ -28,3 +28,11 @@ def picture(results):
     album = Album(results)
     yield album
     album.close()
+
+
+def pytest_generate_tests(metafunc):
+    """The cases of the tests in both.py: those of the file that imports them."""
+    if "figure_fits" in metafunc.fixturenames:
+        metafunc.parametrize("figure_fits, name, options", metafunc.module.PICTURES)
+    if "figure_refused" in metafunc.fixturenames:
+        metafunc.parametrize("figure_refused, name, options, words", metafunc.module.REFUSALS)

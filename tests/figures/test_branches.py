@@ -5,6 +5,7 @@ import re
 import numpy as np
 import pytest
 from album import assert_among, column, counts
+from both import test_all_of_it_fits, test_refusals_say_what_is_missing  # noqa: F401  # of PICTURES and REFUSALS
 from matplotlib.colors import to_rgb
 from shelf import FAMILY, altered
 
@@ -133,18 +134,6 @@ REFUSALS = [
     ("laws", "branches", {}, "it has no branch/point/q (the study did not ask for branch.states)"),
     ("laws", "soft", {}, "figure laws needs a second result, of the chain with rigid floors: --impacts"),
 ]
-
-
-@pytest.mark.parametrize("figure, name, options", PICTURES)
-def test_all_of_it_fits(picture, figure, name, options):
-    picture(figure, name, **options).expect_whole()
-
-
-@pytest.mark.parametrize("figure, name, options, words", REFUSALS)
-def test_refusals_say_what_is_missing(picture, figure, name, options, words):
-    with pytest.raises(ricochet.ResultError) as refused:
-        picture(figure, name, **options)
-    assert words in refused.value.reason
 
 
 def test_natural_figures_are_those_that_one_wants(results):

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from album import assert_among, column
+from both import test_all_of_it_fits, test_refusals_say_what_is_missing  # noqa: F401  # of PICTURES and REFUSALS
 from matplotlib.colors import to_hex, to_rgb
 from shelf import altered, broken, put_text
 
@@ -168,18 +169,6 @@ REFUSALS = [
     ("basin", "basin_line", {}, "this figure needs 2"),
     ("windows", "grid", {}, "it has no window (the study did not ask for iterate.windows)"),
 ]
-
-
-@pytest.mark.parametrize("figure, name, options", PICTURES)
-def test_all_of_it_fits(picture, figure, name, options):
-    picture(figure, name, **options).expect_whole()
-
-
-@pytest.mark.parametrize("figure, name, options, words", REFUSALS)
-def test_refusals_say_what_is_missing(picture, figure, name, options, words):
-    with pytest.raises(ricochet.ResultError) as refused:
-        picture(figure, name, **options)
-    assert words in refused.value.reason
 
 
 def panel_of(drawn, label):

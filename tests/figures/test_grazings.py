@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from album import assert_among, column
+from both import test_all_of_it_fits, test_refusals_say_what_is_missing  # noqa: F401  # of PICTURES and REFUSALS
 from matplotlib.colors import to_rgba
 from shelf import altered, put_text
 
@@ -100,18 +101,6 @@ REFUSALS = [
     ("grazing-windows", "five", {}, "it has no grazing/window_period (the study did not ask for grazing.windows)"),
     ("grazing-curve", "regimes", {}, "it has no grazing/curve (the study did not ask for branch.trace)"),
 ]
-
-
-@pytest.mark.parametrize("figure, name, options", PICTURES)
-def test_all_of_it_fits(picture, figure, name, options):
-    picture(figure, name, **options).expect_whole()
-
-
-@pytest.mark.parametrize("figure, name, options, words", REFUSALS)
-def test_refusals_say_what_is_missing(picture, figure, name, options, words):
-    with pytest.raises(ricochet.ResultError) as refused:
-        picture(figure, name, **options)
-    assert words in refused.value.reason
 
 
 def test_every_grazing_point_is_a_figure_of_its_own(results):

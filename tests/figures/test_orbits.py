@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from album import assert_among, column, counts
+from both import test_all_of_it_fits, test_refusals_say_what_is_missing  # noqa: F401  # of PICTURES and REFUSALS
 from shelf import FAMILY, broken, over_gamma, ring
 
 import ricochet
@@ -132,18 +133,6 @@ REFUSALS = [
     ("approach", "family", {}, "0 tasks with the outcome grazing, this figure needs one"),
     ("ritz", "family", {}, "it has no orbits/ritz_functions (the study did not ask for orbit.method: ritz)"),
 ]
-
-
-@pytest.mark.parametrize("figure, name, options", PICTURES)
-def test_all_of_it_fits(picture, figure, name, options):
-    picture(figure, name, **options).expect_whole()
-
-
-@pytest.mark.parametrize("figure, name, options, words", REFUSALS)
-def test_refusals_say_what_is_missing(picture, figure, name, options, words):
-    with pytest.raises(ricochet.ResultError) as refused:
-        picture(figure, name, **options)
-    assert words in refused.value.reason
 
 
 def natural(results, name):

@@ -4,6 +4,7 @@ import matplotlib
 import numpy as np
 import pytest
 from album import Picture, assert_among, column
+from both import test_all_of_it_fits, test_refusals_say_what_is_missing  # noqa: F401  # of PICTURES and REFUSALS
 from matplotlib.colors import to_hex, to_rgba
 from PIL import Image
 from shelf import FAMILY, altered
@@ -134,18 +135,6 @@ REFUSALS = [
     ("lyapunov", "three", {}, "it has no trajectory/lyapunov (the study did not ask for time.lyapunov)"),
     ("lyapunov-history", "stopped", {"task": 1}, "no exponents of task 1 are known (refused)"),
 ]
-
-
-@pytest.mark.parametrize("figure, name, options", PICTURES)
-def test_all_of_it_fits(picture, figure, name, options):
-    picture(figure, name, **options).expect_whole()
-
-
-@pytest.mark.parametrize("figure, name, options, words", REFUSALS)
-def test_refusals_say_what_is_missing(picture, figure, name, options, words):
-    with pytest.raises(ricochet.ResultError) as refused:
-        picture(figure, name, **options)
-    assert words in refused.value.reason
 
 
 @pytest.mark.parametrize("name, natural", [
