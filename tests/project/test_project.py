@@ -1,4 +1,4 @@
-"""What holds for the project as a whole: includes of the application (mpi.h in run/ and result/ only, hdf5.h in result/
+"""What holds for the project as a whole: includes of the application (mpi.h in run/ only, hdf5.h in result/
 only, yaml.h in study/ only, public headers of the library only, between rooms one way, and between kinds what KINDS
 says), formatting, generated pages, linked libraries, the benchmark's output."""
 
@@ -11,7 +11,7 @@ FORBIDDEN = {("model", "run"), ("model", "result"), ("kind", "run")}  # what tas
 KINDS = {  # what the folder of a kind uses of others
     "family": {"trajectory"}, "orbits": {"trajectory"}, "trajectory": set(),
     "branch": {"family", "orbits"}, "grazing": {"family"}, "diagram": {"family", "grazing"}}  # fmt: skip
-HOMES = {"mpi.h": {"run", "result"}, "hdf5.h": {"result"}, "hdf5_hl.h": {"result"}, "yaml.h": {"study"}}
+HOMES = {"mpi.h": {"run"}, "hdf5.h": {"result"}, "hdf5_hl.h": {"result"}, "yaml.h": {"study"}}
 
 
 def room_and_kind(path):
