@@ -5,6 +5,9 @@
  * references in docs/theory.md. Numbers in round brackets are equations there. docs/glossary.md maps their words to the
  * terms of the field.
  *
+ * Pointers to objects, structs and arrays are never NULL unless the docstring of the function says that they may be;
+ * errors always may, and destroying or clearing NULL does nothing. Nothing else is promised of NULL.
+ *
  * Threads: any number of them may use the library at a time, each with objects of its own. Two threads share
  *  - nothing that one of them changes, destroys, or works with: a solver, a flow, a trajectory, a family, a map runner
  * and a system with all that was made on it are for one thread at a time, also where a function takes them as const;
