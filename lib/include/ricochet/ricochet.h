@@ -6,7 +6,7 @@
  * terms of the field.
  *
  * Pointers to objects, structs and arrays are never NULL unless the docstring of the function says that they may be;
- * errors always may, and destroying or clearing NULL does nothing. Nothing else is promised of NULL.
+ * errors always may, and a destroying function does nothing with NULL. Nothing else is promised of NULL.
  *
  * Threads: any number of them may use the library at a time, each with objects of its own. Two threads share
  *  - nothing that one of them changes, destroys, or works with: a solver, a flow, a trajectory, a family, a map runner
