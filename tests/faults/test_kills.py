@@ -171,6 +171,20 @@ def test_killed_while_it_writes_the_result_nothing_is_computed_again(ricochet, f
     ricochet("show", "s.h5", "--verify", cwd=folder).expect_done()
 
 
+def test_asked_to_stop_while_it_writes_the_result_a_run_stops_soon(ricochet, folder):
+    write(folder, "s.yaml", LARGE)
+    for ranks in (0, 2):
+        before = writing_since(folder)
+        run = ricochet.start_run("s.yaml", "--resume", cwd=folder, ranks=ranks)
+        wait_until(lambda: writing_since(folder) > before, "the beginning of the result")
+        run.send_signal(signal.SIGUSR1)
+        stopped = ricochet.end(run, limit=10)
+        assert "while it was written, with all tasks done; --resume writes it" in stopped.expect(program.STOPPED).err
+        assert names(folder) == ["s.h5.ckpt", "s.yaml"] and tasks_in(folder / "s.h5.ckpt") == 10000
+    ricochet.run("s.yaml", "--resume", cwd=folder).expect_done()
+    assert run_attributes(folder / "s.h5")["tasks_computed"] == 0
+
+
 def test_killed_after_the_result_is_there_resume_finds_it_and_clears_up(ricochet, folder):
     """A kill between the result's name and the end of the checkpoint, made up from its two halves."""
     write(folder, "s.yaml", SLOW)

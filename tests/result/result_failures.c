@@ -19,6 +19,7 @@ struct scenario {
   const char *says; /* expected in the message */
   void (*prepare)(synthetic *s);
   int (*commit)(void *user, message *why);
+  int (*poll)(void *user, message *why);
 };
 
 static int rank, ranks;
@@ -84,16 +85,24 @@ static int lost_lock(void *user, message *why) {
   return refuse(why, EXIT_FILES, "the lock was lost");
 }
 
+static int stop_last(void *user, message *why) {
+  (void)user;
+  return rank == ranks - 1 ? refuse(why, EXIT_STOPPED, "asked to stop") : 0;
+}
+
 static const scenario scenarios[] = {
-    {"limit on the file's size", "a.h5", EXIT_FILES, "a.h5: cannot ", small_limit, NULL},
-    {"no room even for the header", "a.h5", EXIT_FILES, "File too large", tiny_limit, NULL},
-    {"one rank cannot write", "a.h5", EXIT_FILES, "a.h5: cannot write /orbits/outcome", limit_later, NULL},
-    {"one rank cannot read its rows", "a.h5", EXIT_RUN, "has no row", read_failure, NULL},
-    {"commit refuses", "a.h5", EXIT_FILES, "the lock was lost", NULL, lost_lock},
-    {"no such folder", "none/a.h5", EXIT_FILES, "none/a.h5: cannot create it: No such file or directory", NULL, NULL},
-    {"two extents of one axis", "a.h5", EXIT_RUN, "axis particle = ", other_extent, NULL},
-    {"axis with the name of a group", "a.h5", EXIT_RUN, "axis orbits has the name of a group", axis_like_group, NULL},
-    {"rows that are not the tasks", "a.h5", EXIT_RUN, "axis task = ", other_rows, NULL},
+    {"limit on the file's size", "a.h5", EXIT_FILES, "a.h5: cannot ", small_limit, NULL, NULL},
+    {"no room even for the header", "a.h5", EXIT_FILES, "File too large", tiny_limit, NULL, NULL},
+    {"one rank cannot write", "a.h5", EXIT_FILES, "a.h5: cannot write /orbits/outcome", limit_later, NULL, NULL},
+    {"one rank cannot read its rows", "a.h5", EXIT_RUN, "has no row", read_failure, NULL, NULL},
+    {"commit refuses", "a.h5", EXIT_FILES, "the lock was lost", NULL, lost_lock, NULL},
+    {"the last rank is to stop", "a.h5", EXIT_STOPPED, "asked to stop", NULL, NULL, stop_last},
+    {"no such folder", "none/a.h5", EXIT_FILES, "none/a.h5: cannot create it: No such file or directory", NULL, NULL,
+     NULL},
+    {"two extents of one axis", "a.h5", EXIT_RUN, "axis particle = ", other_extent, NULL, NULL},
+    {"axis with the name of a group", "a.h5", EXIT_RUN, "axis orbits has the name of a group", axis_like_group, NULL,
+     NULL},
+    {"rows that are not the tasks", "a.h5", EXIT_RUN, "axis task = ", other_rows, NULL, NULL},
 };
 
 /* --- checks --- */
@@ -138,7 +147,8 @@ static int run(const scenario *t) {
   honest_read = s.tables[0].read;
   if (t->prepare)
     t->prepare(&s);
-  int code = result_write(t->path, &s.header, s.tables, SYNTHETIC_TABLES, t->commit, NULL, &why);
+  const result_hooks hooks = {.poll = t->poll, .commit = t->commit};
+  int code = result_write(t->path, &s.header, s.tables, SYNTHETIC_TABLES, &hooks, &why);
   setrlimit(RLIMIT_FSIZE, &before);
   synthetic_clear(&s);
   return check(t, code, &why);
@@ -151,7 +161,7 @@ static int run_good(void) {
   message why = {""};
   if (synthetic_init(&s, &size, ranks) != 0)
     return 1;
-  int code = result_write("good.h5", &s.header, s.tables, SYNTHETIC_TABLES, NULL, NULL, &why);
+  int code = result_write("good.h5", &s.header, s.tables, SYNTHETIC_TABLES, NULL, &why);
   if (!code)
     code = result_verify("good.h5", &why);
   if (code)

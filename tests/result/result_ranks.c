@@ -15,7 +15,7 @@ static int write_and_time(const char *path, const synthetic_size *size) {
   if (synthetic_init(&s, size, ranks) != 0)
     return EXIT_RUN;
   double start = MPI_Wtime();
-  int code = result_write(path, &s.header, s.tables, SYNTHETIC_TABLES, NULL, NULL, &why);
+  int code = result_write(path, &s.header, s.tables, SYNTHETIC_TABLES, NULL, &why);
   if (rank == 0) {
     printf("%s: %.3f s%s%s\n", path, MPI_Wtime() - start, code ? ": " : "", why.text);
     fflush(stdout); /* before another rank leaves with its code: mpirun then ends this one at once */

@@ -148,7 +148,7 @@ int synthetic_write(const char *path, size_t list) {
   message why;
   int code = synthetic_init(&s, &(synthetic_size){5, 4, 6, 0, 50, 300, list}, 1);
   if (!code)
-    code = result_write(path, &s.header, s.tables, SYNTHETIC_TABLES, NULL, NULL, &why);
+    code = result_write(path, &s.header, s.tables, SYNTHETIC_TABLES, NULL, &why);
   synthetic_clear(&s);
   return code;
 }

@@ -107,6 +107,11 @@ static int open_checkpoint(run *r, message *why) {
   return code;
 }
 
+static const char *stop_words(stop_reason reason) {
+  static const char *const words[] = {"by another rank", "by SIGUSR1", "by --max-time", "by a signal"};
+  return words[reason];
+}
+
 /* Rows from the checkpoint. */
 static int read_done(void *user, uint64_t first, uint64_t count, unsigned char *rows, message *why) {
   const run *r = user;
@@ -166,6 +171,15 @@ static int read_extra(void *user, uint64_t first, uint64_t count, unsigned char 
   return 0;
 }
 
+static int poll_writing(void *user, message *why) {
+  const run *r = user;
+  stop_leave_by_signal();
+  if (stop_asked() == STOP_NONE)
+    return 0;
+  return refuse(why, EXIT_STOPPED, "%s: stopped %s while it was written, with all tasks done; --resume writes it",
+                r->output.path, stop_words(stop_asked()));
+}
+
 static int check_lock(void *user, message *why) {
   const run *r = user;
   return lock_check(r->output.lock, why);
@@ -208,6 +222,7 @@ static int write_result(run *r, message *why) {
                           .ranks = ranks_count(),
                           .tasks_computed = r->computed.computed,
                           .tasks_resumed = r->resumed};
+  const result_hooks hooks = {.poll = poll_writing, .commit = check_lock, .user = r};
   result_table tables[MOST_TABLES];
   tail_source tails[KIND_MOST_TAILS];
   size_t count = list_tables(r, tables, tails);
@@ -217,7 +232,7 @@ static int write_result(run *r, message *why) {
     code = fit_texts(tables, count, stored, why);
   tables[0].read = read_rows;
   if (!code)
-    code = result_write(r->output.path, &header, tables, count, check_lock, r, why);
+    code = result_write(r->output.path, &header, tables, count, &hooks, why);
   free(stored);
   return code;
 }
@@ -261,9 +276,8 @@ static int assemble(run *r, message *why) {
   if (code)
     return code;
   if (checkpoint_done(r->checkpoint) < study_tasks(r->study)) {
-    static const char *const reasons[] = {"by another rank", "by SIGUSR1", "by --max-time", "by a signal"};
     return refuse(why, EXIT_STOPPED, "%s: stopped %s with %llu of %llu tasks done; --resume goes on", r->output.path,
-                  reasons[r->computed.stopped], (unsigned long long)checkpoint_done(r->checkpoint),
+                  stop_words(r->computed.stopped), (unsigned long long)checkpoint_done(r->checkpoint),
                   (unsigned long long)study_tasks(r->study));
   }
   code = ranks_agree(checkpoint_count_entries(r->checkpoint, why), why);

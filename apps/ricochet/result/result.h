@@ -56,16 +56,23 @@ typedef struct result_header {
  * run left. @returns 0 or EXIT_USAGE */
 int result_check_partial(const char *path, message *why);
 
-/** Collective over all ranks: writes `path`.tmp, re-opens and verifies it, syncs, and, when `commit` agrees on rank 0,
- *  renames it to `path` and syncs the folder. On any failure the temporary file is removed and all ranks return the
- *  same code with the same message, that of the lowest rank that failed.
+/** What the writing asks of its caller; a function may be NULL. A code that is not 0 ends the writing on all ranks. */
+typedef struct result_hooks {
+  int (*poll)(void *user, message *why);   /* on every rank, for each block of rows: is the run to stop? */
+  int (*commit)(void *user, message *why); /* on rank 0, just before the rename: does this run still hold the lock? */
+  void *user;
+} result_hooks;
+
+/** Collective over all ranks: writes `path`.tmp, re-opens and verifies it, syncs, renames it to `path` and syncs the
+ *  folder. On any failure the temporary file is removed and all ranks return the same code with the same message, that
+ * of the lowest rank that failed.
  *
  *  The process must ignore SIGXFSZ: then a limit on the size of files gives an error like any other.
- *  @param commit  called on rank 0 just before the rename (does this run still hold the lock?); 0: yes; NULL: always
+ *  @param hooks  NULL for none
  *  @returns 0; EXIT_FILES when it cannot be written; EXIT_RUN when tables contradict each other or memory runs out;
- *           what `read` or `commit` returned */
+ *           what `read` or a hook returned */
 int result_write(const char *path, const result_header *header, const result_table *tables, size_t table_count,
-                 int (*commit)(void *user, message *why), void *user, message *why);
+                 const result_hooks *hooks, message *why);
 
 /** Reads every data set of the file through its checksums, and checks the study's text and the references to the axes,
  *  on this process alone, without MPI_Init.

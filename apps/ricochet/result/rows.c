@@ -8,11 +8,13 @@
 #include <unistd.h>
 
 #include "../base/digest.h"
+#include "../run/ranks.h"
 #include "data_set.h"
 
 /* One block of rows of a table, and one column of it. */
 typedef struct block {
   const file_place *at;
+  const result_hooks *hooks;
   const result_table *from;
   uint64_t height;       /* rows */
   unsigned char *rows;   /* [height][row_bytes] */
@@ -20,10 +22,10 @@ typedef struct block {
   unsigned char *chunk;  /* the largest of a column, with its checksum */
 } block;
 
-static int block_allocate(block *b, const file_place *at, const result_table *from) {
+static int block_allocate(block *b, const file_place *at, const result_hooks *hooks, const result_table *from) {
   const table *layout = from->layout;
   size_t widest = 1, chunk = 1;
-  *b = (block){.at = at, .from = from, .height = plan_block_rows(layout)};
+  *b = (block){.at = at, .hooks = hooks, .from = from, .height = plan_block_rows(layout)};
   for (size_t k = 0; k < layout->column_count; k++) {
     const chunk_grid g = chunk_grid_of(from, &layout->columns[k]);
     if (column_bytes(&layout->columns[k]) > widest)
@@ -45,6 +47,10 @@ static void block_clear(block *b) {
   free(b->rows);
   free(b->values);
   free(b->chunk);
+}
+
+static int poll(const block *b) {
+  return b->hooks->poll ? b->hooks->poll(b->hooks->user, b->at->why) : 0;
 }
 
 static uint64_t rows_from(const block *b, uint64_t first) {
@@ -94,14 +100,18 @@ static int write_column(const block *b, const row_file *f, const column *c, uint
 static int write_block(const block *b, const row_file *f, uint64_t first_set, uint64_t first) {
   const result_table *from = b->from;
   const uint64_t count = rows_from(b, first);
-  int code = from->read(from->user, first, count, b->rows, b->at->why);
+  int code = poll(b);
+  if (!code)
+    code = from->read(from->user, first, count, b->rows, b->at->why);
   for (size_t k = 0; !code && k < from->layout->column_count; k++)
     if (is_stored(from, &from->layout->columns[k]))
       code = write_column(b, f, &from->layout->columns[k], first_set + k, first, count);
   return code;
 }
 
-int rows_write(const plan *p, const chunk_places *places, const file_place *at, records *written, int rank, int ranks) {
+int rows_write(const plan *p, const chunk_places *places, const file_place *at, const result_hooks *hooks,
+               records *written) {
+  const uint64_t rank = (uint64_t)ranks_rank(), ranks = (uint64_t)ranks_count();
   uint64_t set = 0;
   const row_file f = {places, written, open(p->partial, O_WRONLY | O_NOFOLLOW | O_CLOEXEC)};
   if (f.handle < 0)
@@ -110,8 +120,8 @@ int rows_write(const plan *p, const chunk_places *places, const file_place *at, 
   written->record_bytes = sizeof(uint64_t);
   for (size_t i = 0; !code && i < p->table_count; i++) {
     block b;
-    code = block_allocate(&b, at, &p->tables[i]);
-    for (uint64_t k = (uint64_t)rank; !code && k * b.height < b.from->rows; k += (uint64_t)ranks)
+    code = block_allocate(&b, at, hooks, &p->tables[i]);
+    for (uint64_t k = rank; !code && k * b.height < b.from->rows; k += ranks)
       code = write_block(&b, &f, set, k * b.height);
     set += p->tables[i].layout->column_count;
     block_clear(&b);
@@ -153,7 +163,8 @@ static int check_column(const block *b, hid_t set, const column *c, uint64_t fir
   return code;
 }
 
-static int check_table(const block *b, hid_t file, const records *written, uint64_t *next, int rank, int ranks) {
+static int check_table(const block *b, hid_t file, const records *written, uint64_t *next) {
+  const uint64_t rank = (uint64_t)ranks_rank(), ranks = (uint64_t)ranks_count();
   int code = 0;
   const table *layout = b->from->layout;
   hid_t sets[TABLE_MAX_COLUMNS];
@@ -164,29 +175,31 @@ static int check_table(const block *b, hid_t file, const records *written, uint6
     snprintf(name, sizeof name, "/%s/%s", layout->group, layout->columns[k].name);
     HDF5_TRY(b->at, sets[k] = H5Dopen2(file, name, H5P_DEFAULT), "open %s", name);
   }
-  for (uint64_t i = (uint64_t)rank; i * b->height < b->from->rows; i += (uint64_t)ranks)
+  for (uint64_t i = rank; !code && i * b->height < b->from->rows; i += ranks) {
+    code = poll(b);
     for (size_t k = 0; !code && k < layout->column_count; k++)
       if (is_stored(b->from, &layout->columns[k])) {
         uint64_t digest;
         memcpy(&digest, written->bytes + (*next)++ * sizeof digest, sizeof digest);
         code = check_column(b, sets[k], &layout->columns[k], i * b->height, digest);
       }
+  }
 out:
   for (size_t k = 0; k < layout->column_count; k++)
     code = hdf5_close(b->at, sets[k], code);
   return code;
 }
 
-int rows_check(const plan *p, const file_place *at, const records *written, int rank, int ranks) {
+int rows_check(const plan *p, const file_place *at, const result_hooks *hooks, const records *written) {
   int code = 0;
   uint64_t next = 0;
   hid_t file = H5I_INVALID_HID;
   HDF5_TRY(at, file = H5Fopen(p->partial, H5F_ACC_RDONLY, H5P_DEFAULT), "open it");
   for (size_t i = 0; !code && i < p->table_count; i++) {
     block b;
-    code = block_allocate(&b, at, &p->tables[i]);
+    code = block_allocate(&b, at, hooks, &p->tables[i]);
     if (!code)
-      code = check_table(&b, file, written, &next, rank, ranks);
+      code = check_table(&b, file, written, &next);
     block_clear(&b);
   }
 out:

@@ -43,6 +43,7 @@ int result_check_partial(const char *path, message *why) {
 typedef struct writer {
   plan plan;
   file_place at;
+  result_hooks hooks;
   chunk_places places;
   records written; /* digests of what this rank wrote */
   bool made;       /* the file, by rank 0 */
@@ -94,10 +95,10 @@ static int sync_folder(const writer *w) {
 }
 
 /* Rank 0: syncs the verified file, renames it, and syncs the folder. */
-static int publish(const writer *w, int (*commit)(void *user, message *why), void *user) {
+static int publish(const writer *w) {
   int code = sync_at(w, w->plan.partial);
-  if (!code && commit)
-    code = commit(user, w->at.why);
+  if (!code && w->hooks.commit)
+    code = w->hooks.commit(w->hooks.user, w->at.why);
   if (!code && rename(w->plan.partial, w->at.path) != 0)
     code = refuse(w->at.why, EXIT_FILES, "%s: cannot rename %s: %s", w->at.path, w->plan.partial, strerror(errno));
   return code ? code : sync_folder(w);
@@ -115,9 +116,9 @@ static int make_file(writer *w) {
 }
 
 int result_write(const char *path, const result_header *header, const result_table *tables, size_t table_count,
-                 int (*commit)(void *user, message *why), void *user, message *why) {
-  writer w = {.at = {path, why}};
-  int rank = ranks_rank(), ranks = ranks_count();
+                 const result_hooks *hooks, message *why) {
+  writer w = {.at = {path, why}, .hooks = hooks ? *hooks : (result_hooks){0}};
+  const int rank = ranks_rank();
   hdf5_quiet();
   int code = ranks_agree(plan_init(&w.plan, path, header, tables, table_count, why), why);
   if (!code)
@@ -127,13 +128,13 @@ int result_write(const char *path, const result_header *header, const result_tab
   if (!code)
     code = ranks_agree(check_shared_file(&w), why);
   if (!code)
-    code = ranks_agree(rows_write(&w.plan, &w.places, &w.at, &w.written, rank, ranks), why);
+    code = ranks_agree(rows_write(&w.plan, &w.places, &w.at, &w.hooks, &w.written), why);
   if (!code)
-    code = ranks_agree(rows_check(&w.plan, &w.at, &w.written, rank, ranks), why);
+    code = ranks_agree(rows_check(&w.plan, &w.at, &w.hooks, &w.written), why);
   if (!code)
     code = ranks_agree(rank == 0 ? verify_file(&w.at, w.plan.partial, &w.plan) : 0, why);
   if (!code)
-    code = ranks_agree(rank == 0 ? publish(&w, commit, user) : 0, why);
+    code = ranks_agree(rank == 0 ? publish(&w) : 0, why);
   if (code && w.made)
     unlink(w.plan.partial); /* absent if it could not be created */
   chunks_clear(&w.places);
