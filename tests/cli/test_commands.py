@@ -238,7 +238,7 @@ def test_a_run_without_memory_says_so_and_leaves_nothing(ricochet, folder):
         # MPI starts in this much address space; four numbers per particle do not fit.
         resource.setrlimit(resource.RLIMIT_AS, (2 << 30, 2 << 30))
 
-    write(folder, "s.yaml", study(particles="1e8", orbit="states: false"))
+    write(folder, "s.yaml", study(particles="5e7", orbit="states: false"))
     result = ricochet.run("s.yaml", cwd=folder, before=little_memory)
     result.expect(RUN).expect_line("s.yaml: ", "memory")
     assert names(folder) == ["s.yaml"], names(folder)

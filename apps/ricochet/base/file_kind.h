@@ -7,7 +7,7 @@
 
 typedef enum file_kind { FILE_ABSENT, FILE_REGULAR, FILE_FOLDER, FILE_LINK, FILE_OTHER } file_kind;
 
-/** What it is; FILE_OTHER also where the system does not say. */
+/** What it is; FILE_ABSENT also where the system does not say. */
 file_kind file_kind_of(const char *path);
 
 /** Refuses everything but an absent name and one of the wanted kind. @returns 0 or EXIT_USAGE */

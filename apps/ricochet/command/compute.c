@@ -9,6 +9,7 @@ enum { MOST_BYTES = 64 << 20 /* of rows, and of ragged tables, that a rank holds
 
 /* The state of one rank. */
 typedef struct rank {
+  const char *name; /* of the study */
   const kind_plan *plan;
   const kind *kind;
   worker *worker;
@@ -48,8 +49,8 @@ static int grow(rank *r, uint64_t tasks, message *why) {
 }
 
 /* A row must not depend on the memory of the moment. */
-static int refuse_memory(task_range tasks, message *why) {
-  return refuse(why, EXIT_RUN, "no memory for task %llu; finished tasks are kept, --resume goes on",
+static int refuse_memory(const rank *r, task_range tasks, message *why) {
+  return refuse(why, EXIT_RUN, "%s: no memory for task %llu; finished tasks are kept, --resume goes on", r->name,
                 (unsigned long long)tasks.first);
 }
 
@@ -61,7 +62,7 @@ static int evaluate_batch(rank *r, task_range tasks, uint64_t at, int *stopped, 
     before[k] = r->tails[k].count;
   *stopped = poll_all(r) ||
              r->kind->evaluate(r->worker, r->plan, tasks, r->rows + at * r->plan->rows.row_bytes, r->tails) != 0;
-  const int code = ric_memory_refusals() != refusals ? refuse_memory(tasks, why) : 0;
+  const int code = ric_memory_refusals() != refusals ? refuse_memory(r, tasks, why) : 0;
   for (size_t k = 0; k < r->plan->tail_count; k++) { /* of the one task */
     if (*stopped || code)
       records_cut(&r->tails[k], before[k]);
@@ -167,7 +168,12 @@ static int start(rank *r, const study *s, message *why) {
 int compute(const study *s, const kind *k, const kind_plan *plan, checkpoint *c, const run_options *o,
             compute_result *result, message *why) {
   progress p;
-  rank r = {.plan = plan, .kind = k, .checkpoint = c, .progress = &p, .sync_interval = o->checkpoint_seconds};
+  rank r = {.name = study_name(s),
+            .plan = plan,
+            .kind = k,
+            .checkpoint = c,
+            .progress = &p,
+            .sync_interval = o->checkpoint_seconds};
   *result = (compute_result){.stopped = STOP_NONE};
   r.batch = plan->batch > 0 ? plan->batch : 1;
   r.unit = plan->whole ? r.batch : 1;
