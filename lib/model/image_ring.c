@@ -4,6 +4,7 @@
 #include <fftw3.h>
 #include <limits.h>
 #include <math.h>
+#include <stdatomic.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
@@ -118,16 +119,15 @@ void lattice_transform_free(double *x) {
 
 /* FFTW's planner keeps what it has learned for all plans of the process, unguarded: one thread plans at a time. Plans
  * are used without it. */
-static mtx_t planner;
-
-static void make_planner(void) {
-  mtx_init(&planner, mtx_plain); /* fails for kinds of locks that a system does not have; this one all have */
-}
+static atomic_flag planning = ATOMIC_FLAG_INIT;
 
 static void lock_planner(void) {
-  static once_flag once = ONCE_FLAG_INIT;
-  call_once(&once, make_planner);
-  mtx_lock(&planner);
+  while (atomic_flag_test_and_set_explicit(&planning, memory_order_acquire))
+    thrd_yield();
+}
+
+static void unlock_planner(void) {
+  atomic_flag_clear_explicit(&planning, memory_order_release);
 }
 
 static void make_plans(lattice_transform *t, const ric_chain *chain, double *x) {
@@ -144,7 +144,7 @@ static void make_plans(lattice_transform *t, const ric_chain *chain, double *x) 
   t->inverse = fftw_plan_r2r_1d(n, x, x, back, FFTW_ESTIMATE);
   if (chain->ends != RIC_ENDS_PERIODIC)
     t->kernel = fftw_plan_r2r_1d((int)(t->sites / 2 + 1), x, x, FFTW_REDFT00, FFTW_ESTIMATE);
-  mtx_unlock(&planner);
+  unlock_planner();
 }
 
 void lattice_transform_destroy(lattice_transform **t) {
@@ -154,7 +154,7 @@ void lattice_transform_destroy(lattice_transform **t) {
   fftw_destroy_plan((*t)->forward);
   fftw_destroy_plan((*t)->inverse);
   fftw_destroy_plan((*t)->kernel);
-  mtx_unlock(&planner);
+  unlock_planner();
   if ((*t)->room)
     room_give((*t)->room);
   free((*t)->room);
