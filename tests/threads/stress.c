@@ -54,8 +54,7 @@ static const char *const usual[] = {"table",
                                     "diagram_eight",
                                     "diagram_exponents",
                                     "period_map_at_rest",
-                                    "section_strobe",
-                                    "section_strobe_exponents"};
+                                    "section_strobe"};
 
 static const benchmark *chosen[MOST_SCENARIOS];
 static size_t count;
