@@ -136,6 +136,11 @@ REFUSALS = [
 ]
 
 
+def test_the_heading_says_which_particle_hits(picture):
+    assert "particle 3 hits" in picture("branch", "rigid").heading[-1]
+    assert "hit" not in " ".join(picture("branch", "forced").heading)
+
+
 def test_natural_figures_are_those_that_one_wants(results):
     wanted = {"forced": ["branch"], "curves": ["branch", "curves"], "soft": ["branch"]}
     wanted["modes"] = ["frequency-energy", "manifold", "motions"]

@@ -16,6 +16,7 @@ from matplotlib.lines import Line2D
 from ricochet.plot import look, scale
 from ricochet.plot.branches import colours, family, inset
 from ricochet.plot.branches.family import INADMISSIBLE
+from ricochet.plot.pattern import pattern
 from ricochet.plot.sheet import FigureError, Sheet
 from ricochet.plot.words import count, followed
 from ricochet.result import Result
@@ -158,7 +159,7 @@ class Plane:
         sheet.legend(self.entries())
         for note in filter(None, [self.left_out(), *notes]):
             sheet.note(note)
-        words = colours.others(self.result, self.tasks, self.colours.shown)
+        words = [*pattern(self.result), *colours.others(self.result, self.tasks, self.colours.shown)]
         return sheet.finish(varied=[followed(self.result)], words=words)
 
     def _limit(self, sheet: Sheet, axes: Axes) -> None:

@@ -13,6 +13,7 @@ from matplotlib.ticker import MaxNLocator
 from ricochet.plot import look, scale
 from ricochet.plot.catalogue import figure
 from ricochet.plot.orbits import outcomes
+from ricochet.plot.pattern import pattern
 from ricochet.plot.sheet import Sheet, is_narrow
 from ricochet.plot.words import assignment, parameter_symbol
 from ricochet.result import Result
@@ -88,7 +89,7 @@ def approach(result: Result) -> Figure:
         shapes, rates = sheet.panel(0, 0), sheet.panel(0, 1)
     _draw_shapes(sheet, shapes, way)
     _draw_rates(sheet, rates, way)
-    return sheet.finish(words=outcomes.pattern(result))
+    return sheet.finish(words=pattern(result))
 
 
 def _draw_shapes(sheet: Sheet, axes: Axes, way: _Approach) -> None:

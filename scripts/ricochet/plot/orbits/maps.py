@@ -13,6 +13,7 @@ from matplotlib.patches import Patch
 from ricochet.plot import grid, look
 from ricochet.plot.catalogue import figure
 from ricochet.plot.orbits import outcomes, resonance
+from ricochet.plot.pattern import pattern
 from ricochet.plot.sheet import Sheet, is_narrow
 from ricochet.result import Result
 
@@ -41,7 +42,7 @@ def map(result: Result, *, quantity: Quantity = "energy", x: str | None = None) 
     grid.label_once(panels)
     sheet.legend(resonance.draw(panels, tasks))
     grid.note_lone_cells(sheet, tasks, words)
-    return sheet.finish(words=outcomes.pattern(result))
+    return sheet.finish(words=pattern(result))
 
 
 def _draw_quantity(sheet: Sheet, axes: Axes, tasks: grid.Grid, name: Quantity) -> list[Artist]:

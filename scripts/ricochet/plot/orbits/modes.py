@@ -17,6 +17,7 @@ from matplotlib.ticker import MaxNLocator
 from ricochet.plot import look, scale
 from ricochet.plot.catalogue import figure
 from ricochet.plot.orbits import outcomes
+from ricochet.plot.pattern import hitting
 from ricochet.plot.sheet import FigureError, Sheet, expect_count
 from ricochet.plot.words import count, obstacles, parameter_label
 from ricochet.result import Result
@@ -140,7 +141,7 @@ def _frame(sheet: Sheet, axes: Axes, states: Array, sides: Mapping[str, Array]) 
 def _mark_particles(axes: Axes, result: Result) -> list[Artist]:
     """Bands behind the particles of the pattern; their entries of the legend."""
     entries: list[Artist] = []
-    for particles, (text, area) in zip(outcomes.hitting(result), _HITS):
+    for particles, (text, area) in zip(hitting(result), _HITS):
         for particle in particles:
             axes.axvspan(particle - 0.25, particle + 0.25, zorder=0, **area)
         if len(particles):

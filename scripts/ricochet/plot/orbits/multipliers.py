@@ -16,6 +16,7 @@ from matplotlib.ticker import MultipleLocator
 from ricochet.plot import look, scale
 from ricochet.plot.catalogue import figure
 from ricochet.plot.orbits import outcomes
+from ricochet.plot.pattern import pattern
 from ricochet.plot.sheet import FigureError, Sheet, is_narrow
 from ricochet.plot.words import complex_number, parameter_label, task_words
 from ricochet.result import Result
@@ -63,7 +64,7 @@ def multipliers(result: Result, *, task: int | None = None) -> Figure:
     verdict = [str(result["orbits"]["stable"][chosen])] + [outcomes.NOT_ADMISSIBLE] * (
         not outcomes.sound(result)[chosen]
     )
-    return sheet.finish(words=[*outcomes.pattern(result), *task_words(result, chosen), *number, *verdict])
+    return sheet.finish(words=[*pattern(result), *task_words(result, chosen), *number, *verdict])
 
 
 def _known(result: Result) -> Array:

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 
+from ricochet.plot.pattern import hitting
 from ricochet.result import Result
 from ricochet.sweep import Array
 
 CRITICAL = {"plus_one": "pair at +1", "minus_one": "pair at \u22121", "collision": "collision"}
-_MOST_ITEMS = 6  # particles that are written out
 NOT_ADMISSIBLE = "not admissible"
 LABELS = ("resonance", "idle resonance", "singular", "free impulses", *CRITICAL.values())
 
@@ -72,16 +70,7 @@ def special_points(result: Result) -> dict[str, Array]:
     }
 
 
-# --- the pattern ---
-
-
-def hitting(result: Result) -> tuple[list[int], list[int]]:
-    """The particles that hit at t = 0, and those that hit half a period later; without those that are swept."""
-    start, half = (
-        [particle for i, particle in enumerate(result.parameters[key].tolist()) if f"{key}[{i}]" not in result.swept]
-        for key in ("orbit.at_start", "orbit.at_half")
-    )
-    return start, half
+# --- the impacts ---
 
 
 def impacts(result: Result) -> tuple[str, list[int]]:
@@ -89,27 +78,3 @@ def impacts(result: Result) -> tuple[str, list[int]]:
     particles = [particle for when in hitting(result) for particle in when]
     count = result["orbits"]["impulse"].shape[1]
     return ("particle", particles) if len(particles) == count else ("impact", list(range(count)))
-
-
-def pattern(result: Result) -> list[str]:
-    """The pattern in words, for headings; [] if it is swept, or goes without saying."""
-    start, half = hitting(result)
-    if impacts(result)[0] == "impact" or result.parameters["model.particles"] == 1:
-        return []
-    if start and half:
-        return [f"{_hits(result, start)} at $t = 0$", f"{list_text(half)} at $t = T/2$"]
-    return [_hits(result, start or half)]
-
-
-def _hits(result: Result, particles: Sequence[int]) -> str:
-    if len(particles) == result.parameters["model.particles"]:
-        return "all particles hit"
-    return f"particle {particles[0]} hits" if len(particles) == 1 else f"particles {list_text(particles)} hit"
-
-
-def list_text(particles: Sequence[int]) -> str:
-    """Particles in a row, long rows shortened."""
-    texts = [str(particle) for particle in particles]
-    if len(texts) > _MOST_ITEMS:
-        texts = [*texts[: _MOST_ITEMS - 2], "\u2026", texts[-1]]
-    return ", ".join(texts)

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
 from ricochet.plot.grid import Grid
-from ricochet.plot.orbits.outcomes import hitting
+from ricochet.plot.pattern import hitting
 from ricochet.result import Result
 from ricochet.sweep import Array
 

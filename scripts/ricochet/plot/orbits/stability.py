@@ -11,6 +11,7 @@ from matplotlib.patches import Patch
 from ricochet.plot import grid, look
 from ricochet.plot.catalogue import figure
 from ricochet.plot.orbits import outcomes, resonance
+from ricochet.plot.pattern import pattern
 from ricochet.plot.sheet import Sheet, is_narrow
 from ricochet.result import Result
 from ricochet.sweep import Array
@@ -42,7 +43,7 @@ def stability(result: Result, *, all: bool = False, x: str | None = None) -> Fig
     grid.note_lone_cells(sheet, tasks, words)
     if (words == outcomes.NOT_ADMISSIBLE).any():
         sheet.note("--all shows the stability of orbits that are not admissible, too")
-    return sheet.finish(words=outcomes.pattern(result))
+    return sheet.finish(words=pattern(result))
 
 
 def _draw_modulus(sheet: Sheet, axes: Axes, tasks: grid.Grid, words: Array) -> list[Artist]:

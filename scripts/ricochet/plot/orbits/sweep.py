@@ -12,6 +12,7 @@ from matplotlib.lines import Line2D
 from ricochet.plot import look, scale
 from ricochet.plot.catalogue import figure
 from ricochet.plot.orbits import curves, outcomes, strips
+from ricochet.plot.pattern import list_text, pattern
 from ricochet.plot.sheet import Sheet
 from ricochet.plot.words import parameter_label
 from ricochet.result import Result
@@ -54,7 +55,7 @@ def sweep(result: Result, *, all: bool = False) -> Figure:
         dashed = {"color": look.INK, "linestyle": curves.DASHES, "alpha": 0.6}
         sheet.legend([Line2D([], [], label="orbit that is not admissible", **dashed)])
     sheet.figure.align_ylabels(list(panels.values()))
-    return sheet.finish(words=outcomes.pattern(result))
+    return sheet.finish(words=pattern(result))
 
 
 # --- panels ---
@@ -150,7 +151,7 @@ def _equal_columns(impulses: Array) -> list[list[int]]:
 def _impulse_label(noun: str, numbers: Sequence[int]) -> str:
     if len(numbers) == 1:
         return f"impulse of {noun} {numbers[0]}"
-    return f"equal impulses of {noun}s {outcomes.list_text(sorted(numbers))}"
+    return f"equal impulses of {noun}s {list_text(sorted(numbers))}"
 
 
 def _draw_column(sheet: Sheet, axes: Axes, name: str, at: Array, sound: Array, cut: Array, values: Array) -> None:
