@@ -9,7 +9,7 @@
 /** Digest of bytes, continued from that of the bytes before. @param seed  0 to begin */
 uint64_t digest_bytes(uint64_t seed, const void *bytes, size_t size);
 
-/** Another digest of the same kind for large data of one process, word by word: about 8 GB/s. It is never stored. */
+/** Another digest of the same kind for large data of one process, word by word: about 5 GB/s. It is never stored. */
 uint64_t digest_words(const void *bytes, size_t size);
 
 #endif

@@ -7,9 +7,14 @@
 
 enum { BLOCK_BYTES = 4 << 20 /* of rows read at a time; one row may be longer */ };
 
+/* Columns with a text in every row. */
+static bool is_fitted(const column *c) {
+  return c->type == COLUMN_TEXT && column_axes(c) == 0;
+}
+
 static bool has_texts(const table *t) {
   for (size_t k = 0; k < t->column_count; k++)
-    if (t->columns[k].type == COLUMN_TEXT)
+    if (is_fitted(&t->columns[k]))
       return true;
   return false;
 }
@@ -18,12 +23,10 @@ static bool has_texts(const table *t) {
 static void measure(const table *t, const unsigned char *rows, uint64_t count, size_t *longest) {
   for (size_t k = 0; k < t->column_count; k++) {
     const column *c = &t->columns[k];
-    for (uint64_t i = 0; c->type == COLUMN_TEXT && i < count; i++)
-      for (size_t j = 0; j < column_values(c); j++) {
-        const char *text = (const char *)rows + i * t->row_bytes + c->offset + j * c->text_bytes;
-        const size_t length = strnlen(text, c->text_bytes);
-        longest[k] = length > longest[k] ? length : longest[k];
-      }
+    for (uint64_t i = 0; is_fitted(c) && i < count; i++) {
+      const size_t length = strnlen((const char *)rows + i * t->row_bytes + c->offset, c->text_bytes);
+      longest[k] = length > longest[k] ? length : longest[k];
+    }
   }
 }
 
@@ -47,14 +50,12 @@ static int measure_table(const result_table *from, size_t *longest, message *why
   return code;
 }
 
-/* Texts with further axes stay as they are: there are few. */
 static void fit(table *stored, const size_t *longest) {
-  for (size_t k = 0; k < stored->column_count; k++) {
-    column *c = &stored->columns[k];
-    const size_t all = (size_t)ranks_max((double)longest[k]);
-    if (c->type == COLUMN_TEXT && column_axes(c) == 0)
-      c->text_bytes = all > 0 ? all : 1;
-  }
+  for (size_t k = 0; k < stored->column_count; k++)
+    if (is_fitted(&stored->columns[k])) {
+      const size_t all = (size_t)ranks_max((double)longest[k]);
+      stored->columns[k].text_bytes = all > 0 ? all : 1;
+    }
 }
 
 int fit_texts(result_table *tables, size_t count, table *stored, message *why) {

@@ -126,7 +126,8 @@ static const chunk_run *run_of(const chunk_places *places, uint64_t set, uint64_
 
 /* --- their bytes --- */
 
-uint32_t chunk_checksum(const unsigned char *bytes, size_t count) {
+/* Fletcher-32 of bytes as big-endian words of 16 bits, with HDF5's reduction; an odd last byte is padded with zero. */
+static uint32_t checksum_of(const unsigned char *bytes, size_t count) {
   enum { WORDS = 360 }; /* so many words cannot overflow the sums */
   uint32_t low = 0, high = 0;
   for (size_t i = 0; i < count;) {
@@ -143,7 +144,7 @@ uint32_t chunk_checksum(const unsigned char *bytes, size_t count) {
 }
 
 static void put_checksum(unsigned char *chunk, uint64_t bytes) {
-  const uint32_t sum = chunk_checksum(chunk, bytes);
+  const uint32_t sum = checksum_of(chunk, bytes);
   for (int i = 0; i < CHECKSUM_BYTES; i++)
     chunk[bytes + (uint64_t)i] = (unsigned char)(sum >> 8 * i);
 }

@@ -50,7 +50,4 @@ void chunks_clear(chunk_places *places);
 int chunks_write(const chunk_places *places, uint64_t set, const chunk_grid *g, int handle, uint64_t first,
                  uint64_t count, const unsigned char *values, unsigned char *buffer);
 
-/** Fletcher-32 of bytes as big-endian words of 16 bits, with HDF5's reduction; an odd last byte is padded with zero. */
-uint32_t chunk_checksum(const unsigned char *bytes, size_t count);
-
 #endif

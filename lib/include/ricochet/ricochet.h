@@ -8,13 +8,13 @@
  * Pointers to objects, structs and arrays are never NULL unless the docstring of the function says that they may be;
  * errors always may, and a destroying function does nothing with NULL. Nothing else is promised of NULL.
  *
- * Threads: any number of them may use the library at a time, each with objects of its own. Two threads share
- *  - nothing that one of them changes, destroys, or works with: a solver, a flow, a trajectory, a family, a map runner
- * and a system with all that was made on it are for one thread at a time, also where a function takes them as const;
- *  - what is only read: chains, lattices and other structs of numbers, patterns, orbits and maps.
- * Errors are written to the ric_error of the caller. Callbacks run in the thread that calls.
- * The library switches GSL's error handler off, once, when it first needs that, and leaves one that is set later. Plans
- * of FFTW are made by one thread at a time within the library; a program that makes plans of its own meanwhile calls
+ * Threads: any number of them may use the library at a time, each with objects of its own. Structs of numbers,
+ * patterns, orbits and maps may be read by several threads at once. All other objects are for one thread at a time,
+ * also where a function takes them as const; a system and all that was made on it count as one. Errors are written to
+ * the ric_error of the caller. Callbacks run in the thread that calls.
+ *
+ * The library switches GSL's error handler off, once, when it first needs that, and leaves one that is set later.
+ * Within the library one thread at a time makes plans of FFTW; a program that makes plans of its own meanwhile calls
  * fftw_make_planner_thread_safe first. */
 #ifndef RICOCHET_H
 #define RICOCHET_H
