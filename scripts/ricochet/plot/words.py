@@ -87,9 +87,9 @@ def complex_number(value: complex, digits: int = 4) -> str:
     return rf"{real} {sign} {number(abs(value.imag), digits)}\,i".strip()
 
 
-def count(number: int, noun: str) -> str:
-    """ "1 impact", "3 impacts", "no impact"."""
-    return f"{number or 'no'} {noun}{'s' if number > 1 else ''}"
+def count(number: int, noun: str, ending: str = "s") -> str:
+    """ "1 impact", "3 impacts", "no impact"; `ending` makes the plural."""
+    return f"{number or 'no'} {noun}{ending if number > 1 else ''}"
 
 
 # --- parameters ---
@@ -177,7 +177,7 @@ def _kind_of_system(result: Result) -> str:
         return "map (5.11) of [FN97]" if len(values["model.eta"]) else "map (6.1)\u2013(6.5) of [FN97]"
     particles = values["model.particles"]
     if values["model.type"] == "duffing_chain":
-        return count(particles, "mass").replace("masss", "masses") + (" in series" if particles > 1 else "")
+        return count(particles, "mass", "es") + (" in series" if particles > 1 else "")
     if is_alone(result):
         return "one particle"
     word = "particle" if particles == 1 else "particles"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Literal
 
 import numpy as np
@@ -16,6 +17,7 @@ from ricochet.plot.orbits import outcomes, resonance
 from ricochet.plot.pattern import pattern
 from ricochet.plot.sheet import Sheet, is_narrow
 from ricochet.result import Result
+from ricochet.sweep import Array
 
 Quantity = Literal["energy", "clearance", "impulse", "none"]
 
@@ -37,12 +39,17 @@ def map(result: Result, *, quantity: Quantity = "energy", x: str | None = None) 
     sheet.legend(grid.draw_words(panels[0], tasks, words, look.OUTCOMES))
     if quantity != "none":
         sheet.legend(_draw_quantity(sheet, panels[1], tasks, quantity))
+    finish_map(sheet, panels, tasks, words)
+    return sheet.finish(words=pattern(result))
+
+
+def finish_map(sheet: Sheet, panels: Sequence[Axes], tasks: grid.Grid, words: Array) -> None:
+    """What all maps of orbits have: axes, the resonance of the highest mode, a note on lone cells."""
     for axes in panels:
         tasks.frame(axes)
     grid.label_once(panels)
     sheet.legend(resonance.draw(panels, tasks))
     grid.note_lone_cells(sheet, tasks, words)
-    return sheet.finish(words=pattern(result))
 
 
 def _draw_quantity(sheet: Sheet, axes: Axes, tasks: grid.Grid, name: Quantity) -> list[Artist]:

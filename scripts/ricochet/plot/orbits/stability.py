@@ -10,7 +10,8 @@ from matplotlib.patches import Patch
 
 from ricochet.plot import grid, look
 from ricochet.plot.catalogue import figure
-from ricochet.plot.orbits import outcomes, resonance
+from ricochet.plot.orbits import outcomes
+from ricochet.plot.orbits.maps import finish_map
 from ricochet.plot.pattern import pattern
 from ricochet.plot.sheet import Sheet, is_narrow
 from ricochet.result import Result
@@ -36,11 +37,7 @@ def stability(result: Result, *, all: bool = False, x: str | None = None) -> Fig
     words = outcomes.stability(result, all)
     sheet.legend(grid.draw_words(panels[0], tasks, words, _LOOKS))
     sheet.legend(_draw_modulus(sheet, panels[1], tasks, words))
-    for axes in panels:
-        tasks.frame(axes)
-    grid.label_once(panels)
-    sheet.legend(resonance.draw(panels, tasks))
-    grid.note_lone_cells(sheet, tasks, words)
+    finish_map(sheet, panels, tasks, words)
     if (words == outcomes.NOT_ADMISSIBLE).any():
         sheet.note("--all shows the stability of orbits that are not admissible, too")
     return sheet.finish(words=pattern(result))
