@@ -200,6 +200,8 @@ static void find_on(search *x, const arc *a, int spare) {
   if (barren && seen == 0 && !dips(x->s, a, &where))
     return;
   divide(x->s, a, where > 0 ? where : place(x->s, a), &left, &right);
+  if (where > 0 && bound_of(x->s, &left) == 0 && bound_of(x->s, &right) == 0)
+    return; /* the eigenvalues of H change no sign there: that of det H is rounding */
   if (length < noisy && bound_of(x->s, &left) + bound_of(x->s, &right) > bound) {
     put(x, (a->low + a->high) / 2, bound);
     return;
