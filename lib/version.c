@@ -9,5 +9,5 @@ const char *ric_version(void) {
 }
 
 const char *ric_libraries(void) {
-  return "GSL " GSL_VERSION ", FFTW " RIC_FFTW_VERSION ", SUNDIALS " SUNDIALS_VERSION;
+  return "GSL " GSL_VERSION ", FFTW " RIC_FFTW_VERSION ", SLEEF " RIC_SLEEF_VERSION ", SUNDIALS " SUNDIALS_VERSION;
 }

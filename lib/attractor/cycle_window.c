@@ -10,6 +10,7 @@
 #include <gsl/gsl_roots.h>
 
 #include "cycle_equations.h"
+#include "ricochet/elementary.h"
 #include "numeric/gsl_quiet.h"
 
 enum { MOST_STEPS = 100000, MOST_TRIALS = 200 };
@@ -177,7 +178,7 @@ static ric_status step_to(edge_search *w, double length, double bound, bool *goo
   for (size_t i = 0; i <= last; i++)
     w->next.place += w->row[i] * (w->next.x[i] - w->here.x[i]);
   *good = moved <= most_moved * length && w->next.place > 0 &&
-          cycle_curve_product(c, w->here.tangent, w->next.tangent) >= cos(most_turn);
+          cycle_curve_product(c, w->here.tangent, w->next.tangent) >= ric_cos(most_turn);
   return RIC_OK;
 }
 

@@ -9,6 +9,7 @@
 #include "map_simd.h"
 #include "numeric/linear.h"
 #include "numeric/number_block.h"
+#include "ricochet/elementary.h"
 #include "numeric/gsl_quiet.h"
 
 enum {
@@ -328,7 +329,7 @@ static ric_status run_transient(ric_map_runner *r, size_t until, ric_error *erro
 /* Logarithm of the length of a tangent vector. */
 static double length_of(const map_block *b, size_t vector, size_t lane) {
   size_t at = vector * b->width + lane;
-  return log(b->norm[at]) / 2 + (double)b->power[at] * log(2);
+  return ric_log(b->norm[at]) / 2 + (double)b->power[at] * ric_log(2);
 }
 
 static void begin_measuring(ric_map_runner *r) {
@@ -468,7 +469,7 @@ static void reset_trial(trial *t) {
     double *at = t->numbers + i * piece;
     memset(at, 0, size * sizeof *at);
     t->maps[i] = &t->map;
-    t->d[i] = 1e-4 * exp(0.1 * (double)i);
+    t->d[i] = 1e-4 * ric_exp(0.1 * (double)i);
     t->attractors[i] = (ric_attractor){.z = at, .exponents = at + size};
   }
 }

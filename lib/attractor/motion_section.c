@@ -9,6 +9,7 @@
 #include "floquet/lyapunov.h"
 #include "impact/trajectory.h"
 #include "numeric/constants.h"
+#include "ricochet/elementary.h"
 #include "ricochet/motion_section.h"
 
 /* Crossings of a motion with a section, in blocks.
@@ -315,8 +316,9 @@ static void add_to_window(const section_run *j, const double *z, size_t k) {
   memcpy(row, z, numbers * sizeof *row);
   if (c->size > numbers) {
     double radius = c->options.period / two_pi;
-    row[numbers] = radius * cos(z[numbers] / radius);
-    row[numbers + 1] = radius * sin(z[numbers] / radius);
+    ric_sincos(z[numbers] / radius, &row[numbers + 1], &row[numbers]);
+    row[numbers] *= radius;
+    row[numbers + 1] *= radius;
   }
 }
 

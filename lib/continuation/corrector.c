@@ -7,6 +7,7 @@
 #include <gsl/gsl_linalg.h>
 
 #include "curve.h"
+#include "ricochet/elementary.h"
 #include "numeric/gsl_quiet.h"
 
 /* From this size on LU with row pivoting: 9 times as quick as QR at 1000, twice at 30, since GSL does it in blocks. It
@@ -121,7 +122,7 @@ bordered_determinant bordered_det(const bordered *b) {
     if (!(fabs(r) > 0 && fabs(r) < INFINITY))
       return (bordered_determinant){0};
     det.sign *= (r > 0 ? 1 : -1) * (!by_lu(b) && b->tau[i] != 0 ? -1 : 1);
-    det.log += log(fabs(r));
+    det.log += ric_log(fabs(r));
   }
   return det;
 }
@@ -189,7 +190,7 @@ ric_status corrector_tangent(ric_curve *c, double *t, bordered_determinant *det,
   for (size_t i = 0; i < c->linear.size; i++)
     t[i] /= length;
   *det = bordered_det(&c->linear);
-  det->log += log(length); /* converts to the tangent as the row: <row, t> = 1 / length */
+  det->log += ric_log(length); /* converts to the tangent as the row: <row, t> = 1 / length */
   return RIC_OK;
 }
 

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "corrector.h"
+#include "ricochet/elementary.h"
 #include "step.h"
 #include "numeric/gsl_quiet.h"
 
@@ -122,7 +123,7 @@ static ric_status step_curve(curve_follower *w, bool *landed, bool *closed, bool
 static void choose_next(curve_follower *w, bool shortened) {
   const ric_curve_options *o = &w->c->options;
   double turn = step_turn(w->c), wanted = fmax(1, o->iterations / 4.0);
-  double factor = exp2((wanted - w->c->to.iterations) / 2);
+  double factor = ric_exp2((wanted - w->c->to.iterations) / 2);
   if (turn > 0)
     factor = fmin(factor, turn_wanted * o->turn / turn);
   factor = fmax(0.5, fmin(factor, shortened ? 1 : 2));

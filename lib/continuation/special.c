@@ -9,6 +9,7 @@
 #include <gsl/gsl_linalg.h>
 
 #include "corrector.h"
+#include "ricochet/elementary.h"
 #include "step.h"
 #include "numeric/gsl_quiet.h"
 
@@ -39,7 +40,7 @@ static double value_of(const search *s, const curve_node *node) {
   case RIC_CURVE_FOLD:
     return node->t[s->c->problem.unknowns];
   case RIC_CURVE_BRANCH_POINT:
-    return node->det.sign ? node->det.sign * exp(node->det.log - s->log_scale) : NAN;
+    return node->det.sign ? node->det.sign * ric_exp(node->det.log - s->log_scale) : NAN;
   default:
     return node->tests[s->which];
   }
@@ -341,7 +342,7 @@ static ric_status find_null_vectors(ric_curve *c, null_space *k, ric_error *erro
 /* psi . F_xx[phi, t] and psi . F_xx[phi, phi] by central differences of the Jacobian along phi. */
 static ric_status differentiate(ric_curve *c, const null_space *k, const double *x, const double *t, double *mixed,
                                 double *pure, ric_error *error) {
-  double h = cbrt(2.2e-16) * (1 + curve_norm(c, x)) / curve_norm(c, k->phi->data);
+  double h = ric_cbrt(2.2e-16) * (1 + curve_norm(c, x)) / curve_norm(c, k->phi->data);
   *mixed = *pure = 0;
   for (int side = -1; side <= 1; side += 2) {
     for (size_t i = 0; i < c->linear.size; i++)
@@ -366,7 +367,7 @@ static ric_status other_tangent(ric_curve *c, null_space *k, const double *x, co
   if (!(fabs(mixed) > transversal * fabs(pure)))
     return ric_fail(error, RIC_ENUMERIC, "no simple branch point: the branches are tangent, psi F_xx = %.3g, %.3g",
                     mixed, pure);
-  double alpha = -pure, beta = 2 * mixed, length = hypot(alpha, beta);
+  double alpha = -pure, beta = 2 * mixed, length = ric_hypot(alpha, beta);
   for (size_t i = 0; i < c->linear.size; i++)
     other[i] = (alpha * t[i] + beta * k->phi->data[i]) / length;
   return RIC_OK;

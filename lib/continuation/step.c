@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "corrector.h"
+#include "ricochet/elementary.h"
 
 /* d x_i / d sigma at both ends */
 typedef struct slopes {
@@ -145,7 +146,7 @@ void step_set_row(ric_curve *c) {
 
 /* From the chord between the tangents: the inner product loses small angles. */
 static double angle(const ric_curve *c, const double *a, const double *b) {
-  return 2 * asin(fmin(1, curve_distance(c, a, b) / 2));
+  return 2 * ric_asin(fmin(1, curve_distance(c, a, b) / 2));
 }
 
 double step_turn(const ric_curve *c) {

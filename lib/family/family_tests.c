@@ -82,7 +82,7 @@ static bool stands_for_pair(const ric_family *f, size_t k) {
   if (f->problem.motion.kind == RIC_MOTION_EVEN)
     return true;
   ric_complex mu = f->multipliers.mu[k];
-  double outside = hypot(mu.re, mu.im) - 1;
+  double outside = ric_hypot(mu.re, mu.im) - 1;
   return outside > rounding || (outside > -rounding && mu.im > 0);
 }
 
@@ -94,7 +94,7 @@ typedef struct nearest_pairs {
 
 /* Distance below which two alpha count as equal. */
 static double coincidence_distance(const ric_family *f, double complex a) {
-  return coincidence * (1 + cabs(a) + f->multipliers.largest / 1000);
+  return coincidence * (1 + complex_modulus(a) + f->multipliers.largest / 1000);
 }
 
 /* The nearest two that do not coincide. @param coincide  set to the number that coincide
@@ -105,7 +105,7 @@ static nearest_pairs nearest_different(const ric_family *f, size_t *coincide, do
   for (size_t i = 0; i < alpha_count(f); i++)
     for (size_t j = 0; j < i && stands_for_pair(f, i); j++) {
       double complex a = alpha_of(f, i);
-      double apart = cabs(a - alpha_of(f, j));
+      double apart = complex_modulus(a - alpha_of(f, j));
       if (!stands_for_pair(f, j))
         continue;
       if (apart <= coincidence_distance(f, a)) {
@@ -157,7 +157,7 @@ static double largest_complex_modulus(const ric_family *f) {
   double largest = NAN;
   for (size_t i = 0; i < f->multipliers.count; i++) {
     ric_complex mu = f->multipliers.mu[i];
-    double modulus = hypot(mu.re, mu.im);
+    double modulus = ric_hypot(mu.re, mu.im);
     if (fabs(mu.im) > rounding * (1 + modulus) && !(modulus - 1 <= largest))
       largest = modulus - 1;
   }
@@ -169,7 +169,7 @@ static double product_of_distances(const ric_family *f, double c) {
   double complex product = 1;
   for (size_t i = 0; i < alpha_count(f); i++) {
     double complex a = alpha_of(f, i);
-    product *= (a - c) / (1 + cabs(a));
+    product *= (a - c) / (1 + complex_modulus(a));
   }
   return creal(product);
 }

@@ -11,6 +11,7 @@
 #include <gsl/gsl_linalg.h>
 
 #include "family.h"
+#include "ricochet/elementary.h"
 #include "numeric/gsl_quiet.h"
 
 /* Step of differences of psi, relative to 1 + the size of the variable. */
@@ -36,11 +37,14 @@ typedef struct tracer {
 
 static ric_status determinant(tracer *t, const double *z, double *value, ric_error *error) {
   size_t n = t->f->unknowns;
+  double log = 0;
   int sign;
   RIC_TRY(ric_shooting_residual(t->f->shooting, z, t->f->given, t->F, t->J, NULL, error));
   gsl_matrix_view J = gsl_matrix_view_array(t->J, n, n);
   gsl_linalg_LU_decomp(&J.matrix, t->order, &sign);
-  *value = gsl_linalg_LU_sgndet(&J.matrix, sign) * exp(gsl_linalg_LU_lndet(&J.matrix));
+  for (size_t i = 0; i < n; i++)
+    log += ric_log(fabs(gsl_matrix_get(&J.matrix, i, i)));
+  *value = gsl_linalg_LU_sgndet(&J.matrix, sign) * ric_exp(log);
   return RIC_OK;
 }
 

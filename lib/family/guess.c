@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "numeric/constants.h"
+#include "ricochet/elementary.h"
 #include "ricochet/family.h"
 #include "ricochet/normal_modes.h"
 #include "shooting/shooting.h"
@@ -314,7 +315,7 @@ static ric_status find_even(homotopy *h, ric_error *error) {
 
 /* Depth at which the work against Hertz's force on a unit mass, 2/5 k d^(5/2), equals the kinetic energy v^2 / 2. */
 static double find_depth(double speed, double stiffness) {
-  return pow(5 * speed * speed / (4 * stiffness), 0.4);
+  return ric_pow(5 * speed * speed / (4 * stiffness), 0.4);
 }
 
 /* At a Hertz contact t = 0 is the turning point, at the largest depth. */

@@ -8,6 +8,7 @@
 
 #include "multipliers.h"
 #include "numeric/constants.h"
+#include "ricochet/elementary.h"
 
 /* Arcs of this length count as points. With a pole on or next to an arc, rounding is 1e-16 over the distance of alpha,
  * and the second value is the shortest distance. */
@@ -27,7 +28,7 @@ typedef struct arc {
 
 /* Length below which an arc with a pole is not divided: alpha = cos(angle). */
 static double undivided(const arc *a) {
-  return shortest_at_pole / fmax(fmax(sin(a->low), sin(a->high)), 1e-8);
+  return shortest_at_pole / fmax(fmax(ric_sin(a->low), ric_sin(a->high)), 1e-8);
 }
 
 /* Poles of f on it, and the sum of their signs. */
@@ -147,7 +148,7 @@ typedef struct search {
 static int sign_at(secular *s, double angle, double *modulus) {
   double complex value = secular_log(s, CMPLX(0, angle));
   *modulus = creal(value);
-  return cos(cimag(value)) < 0 ? 1 : -1;
+  return ric_cos(cimag(value)) < 0 ? 1 : -1;
 }
 
 /* Two multipliers of opposite sign on an arc without poles change the sign of det H between them: searches such a place
@@ -253,7 +254,7 @@ static bool count_outside(secular *s, double distance, multiplier_counts *t) {
   t->farther = t->outside;
   t->far = t->contour > 0 ? t->contour : INFINITY;
   for (int i = 0; i < 4; i++) {
-    t->contour = log1p(distance * (1 + 0.1371 * i));
+    t->contour = ric_log(1 + distance * (1 + 0.1371 * i));
     if (winding_outside(s, t->contour, &t->outside))
       return true;
   }
@@ -316,7 +317,8 @@ static void locate(secular *s, const multiplier_counts *t, ric_multipliers *m) {
 /* On the unit circle each pair contributes two. */
 static void put_on_circle(ric_multipliers *m, const double *angles, size_t count) {
   for (size_t i = 0; i < count && m->count + 2 <= m->dimension; i++) {
-    double re = cos(angles[i]), im = sin(angles[i]);
+    double re, im;
+    ric_sincos(angles[i], &im, &re);
     m->mu[m->count++] = (ric_complex){re, im};
     m->mu[m->count++] = (ric_complex){re, -im};
   }

@@ -41,24 +41,24 @@ static void multiplier_pair(ric_complex alpha, ric_complex pair[2]) {
     real_pair(alpha.re, pair);
     return;
   }
-  double complex a = CMPLX(alpha.re, fabs(alpha.im)), root = csqrt(a - 1) * csqrt(a + 1);
+  double complex a = CMPLX(alpha.re, fabs(alpha.im)), root = complex_sqrt(a - 1) * complex_sqrt(a + 1);
   double complex large = creal(conj(a) * root) >= 0 ? a + root : a - root, small = 1 / large;
   pair[0] = plain(alpha.im > 0 ? large : conj(large));
   pair[1] = plain(alpha.im > 0 ? small : conj(small));
 }
 
 static double modulus(ric_complex z) {
-  return hypot(z.re, z.im);
+  return ric_hypot(z.re, z.im);
 }
 
 static double distance_from_one(ric_complex z) {
-  return hypot(z.re - 1, z.im);
+  return ric_hypot(z.re - 1, z.im);
 }
 
 /* By modulus, largest first, then by argument, positive first. */
 static int in_order(const void *a, const void *b) {
   const ric_complex *x = a, *y = b;
-  double rx = modulus(*x), ry = modulus(*y), ax = fabs(atan2(x->im, x->re)), ay = fabs(atan2(y->im, y->re));
+  double rx = modulus(*x), ry = modulus(*y), ax = fabs(ric_atan2(x->im, x->re)), ay = fabs(ric_atan2(y->im, y->re));
   if (rx != ry)
     return rx > ry ? -1 : 1;
   if (ax != ay)
@@ -162,7 +162,7 @@ static void evaluate_trivial(ric_multipliers *m, size_t trivial) {
 static double log_determinant(const ric_multipliers *m) {
   double sum = 0;
   for (size_t i = 0; i < m->count; i++)
-    sum += log(modulus(m->mu[i]));
+    sum += ric_log(modulus(m->mu[i]));
   return m->count == m->dimension ? sum : NAN;
 }
 

@@ -6,6 +6,7 @@
 
 #include "model/image_ring.h"
 #include "numeric/constants.h"
+#include "ricochet/elementary.h"
 
 void orbit_impacts_clear(orbit_impacts *list) {
   free(list->items);
@@ -90,9 +91,9 @@ static void compute(flow_kernel *k, const lattice_transform *t, const ric_chain 
   double gamma = image_ring_gamma(chain);
   for (size_t j = 0; j <= sites / 2; j++) {
     double omega = ric_dispersion(gamma, 2 * pi * (double)j / (double)sites);
-    k->cosine[j] = cos(omega * time);
-    k->sine[j] = sin(omega * time) / omega;
-    k->fall[j] = -omega * sin(omega * time);
+    ric_sincos(omega * time, &k->sine[j], &k->cosine[j]);
+    k->fall[j] = -omega * k->sine[j];
+    k->sine[j] /= omega;
   }
   lattice_transform_kernel(t, k->cosine);
   lattice_transform_kernel(t, k->sine);

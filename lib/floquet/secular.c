@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include "numeric/constants.h"
+#include "ricochet/elementary.h"
 
 /* Set-up of the determinant for an orbit: modes, poles, memory. */
 
@@ -104,18 +105,20 @@ static void set_coefficients(secular *s, size_t j, double omega, double x) {
     double felt = a->shape[k * s->particles + j] * s->impact[k].impulse;
     *(s->impact[k].at_half ? &half : &start) += felt;
   }
-  double cot = omega / (2 * tan(x)), csc = omega / (2 * sin(x));
-  a->below_one[j] = 2 * sin(x) * sin(x);
-  a->above_minus_one[j] = 2 * cos(x) * cos(x);
-  a->same_position[j] = sin(2 * x) / (2 * omega);
-  a->same_speed[j] = -omega * sin(2 * x) / 2;
-  a->other_position[j] = sin(x) / omega;
-  a->other_mean[j] = cos(x);
-  a->other_speed[j] = -omega * sin(x);
+  double sine, cosine;
+  ric_sincos(x, &sine, &cosine);
+  double cot = omega * cosine / (2 * sine), csc = omega / (2 * sine);
+  a->below_one[j] = 2 * sine * sine;
+  a->above_minus_one[j] = 2 * cosine * cosine;
+  a->same_position[j] = sine * cosine / omega;
+  a->same_speed[j] = -omega * sine * cosine;
+  a->other_position[j] = sine / omega;
+  a->other_mean[j] = cosine;
+  a->other_speed[j] = -omega * sine;
   a->along_start[j] = cot * start + csc * half;
   a->along_half[j] = cot * half + csc * start;
-  a->along_start_beta[j] = -omega * sin(x) / 2 * half;
-  a->along_half_beta[j] = -omega * sin(x) / 2 * start;
+  a->along_start_beta[j] = -omega * sine / 2 * half;
+  a->along_half_beta[j] = -omega * sine / 2 * start;
 }
 
 static int by_angle(const void *a, const void *b) {
@@ -152,11 +155,11 @@ ric_status secular_prepare(secular *s, const ric_chain *chain, const orbit_impac
   return RIC_OK;
 }
 
-/* 1 / (alpha - cos wT), with the difference computed from the nearer of 1 and -1, without cancellation. */
-static void set_resolvent(secular *s, double complex zeta) {
-  double complex half = csinh(zeta / 2), other_half = ccosh(zeta / 2);
-  bool right = creal(ccosh(zeta)) >= 0;
-  double complex from_end = right ? 2 * half * half : 2 * other_half * other_half;
+/* 1 / (alpha - cos wT), alpha = cosh zeta = beta^2 + kappa^2, with the difference computed from the nearer of 1 and -1,
+ * without cancellation; kappa = sinh(zeta / 2), beta = cosh(zeta / 2). */
+static void set_resolvent(secular *s, double complex kappa, double complex beta) {
+  bool right = creal(beta * beta + kappa * kappa) >= 0;
+  double complex from_end = right ? 2 * kappa * kappa : 2 * beta * beta;
   double re = creal(from_end), im = cimag(from_end), sign = right ? 1 : -1;
   const double *pole = right ? s->modes.below_one : s->modes.above_minus_one;
   for (size_t j = 0; j < s->modes.visible; j++) {
@@ -166,7 +169,7 @@ static void set_resolvent(secular *s, double complex zeta) {
   }
 }
 
-/* The three sums of a pair of impacts; with the factor beta = cosh(zeta / 2) required by its parity. */
+/* The three sums of a pair of impacts; with the factor beta required by its parity. */
 static void sum_pair(secular *s, size_t k, size_t l, double complex beta) {
   const secular_modes *a = &s->modes;
   const double *first = a->shape + k * s->particles, *second = a->shape + l * s->particles;
@@ -206,10 +209,9 @@ static void sum_along(secular *s, size_t k, double complex beta) {
   s->along[k] = CMPLX(sum[0], sum[1]) + CMPLX(sum[2], sum[3]) / (beta + 1);
 }
 
-static void set_sums(secular *s, double complex zeta) {
-  double complex beta = ccosh(zeta / 2);
+static void set_sums(secular *s, double complex kappa, double complex beta) {
   s->evaluations++;
-  set_resolvent(s, zeta);
+  set_resolvent(s, kappa, beta);
   for (size_t k = 0; k < s->impacts; k++) {
     for (size_t l = 0; l <= k; l++)
       sum_pair(s, k, l, beta);
@@ -221,11 +223,11 @@ static void set_entry(secular *s, size_t row, size_t column, double complex z) {
   s->matrix[row * 2 * s->impacts + column] = z;
 }
 
-/* N, with the factor (-4)^m in its rows, its speed columns times kappa = sinh(zeta / 2) and its speed rows over it, and
+/* N, with the factor (-4)^m in its rows, its speed columns times kappa and its speed rows over it, and
  * the column of the largest impulse replaced by N w / (alpha - 1), w the jumps along the orbit. */
-static void set_matrix(secular *s, double complex zeta) {
+static void set_matrix(secular *s, double complex kappa) {
   size_t m = s->impacts;
-  double complex kappa = csinh(zeta / 2), square = kappa * kappa;
+  double complex square = kappa * kappa;
   for (size_t k = 0; k < m; k++) {
     double complex along = 0;
     for (size_t l = 0; l < m; l++) {
@@ -280,8 +282,8 @@ static double complex log_determinant(double complex *a, size_t size) {
   for (size_t c = 0; c < size; c++) {
     argument += pivot(a, size, c) ? pi : 0;
     double complex diagonal = a[c * size + c];
-    modulus += log(hypot(creal(diagonal), cimag(diagonal)));
-    argument += atan2(cimag(diagonal), creal(diagonal));
+    modulus += ric_log(ric_hypot(creal(diagonal), cimag(diagonal)));
+    argument += ric_atan2(cimag(diagonal), creal(diagonal));
     eliminate(a, size, c);
   }
   return CMPLX(modulus, argument);
@@ -291,15 +293,17 @@ double complex secular_log(secular *s, double complex zeta) {
   s->stopped = s->stopped || ric_poll_stops(s->poll);
   if (s->stopped)
     return CMPLX(NAN, NAN);
-  set_sums(s, zeta);
-  set_matrix(s, zeta);
+  double complex kappa, beta;
+  complex_sinh_cosh(zeta / 2, &kappa, &beta);
+  set_sums(s, kappa, beta);
+  set_matrix(s, kappa);
   return log_determinant(s->matrix, 2 * s->impacts);
 }
 
 /* H = [[A, -B], [-B, -C - s/4]], real on the circle. */
 static void set_symmetric(secular *s, double angle) {
   size_t m = s->impacts;
-  double mean = -sin(angle / 2);
+  double mean = -ric_sin(angle / 2);
   for (size_t k = 0; k < m; k++)
     for (size_t l = 0; l < m; l++) {
       size_t i = k * m + l;
@@ -315,7 +319,7 @@ static void set_symmetric(secular *s, double angle) {
  * the smallest one is noise. */
 size_t secular_negative(secular *s, double angle) {
   double complex value = secular_log(s, CMPLX(0, angle));
-  bool odd = cos(cimag(value)) > 0;
+  bool odd = ric_cos(cimag(value)) > 0;
   size_t negative = 0, smallest = 0;
   set_symmetric(s, angle);
   gsl_eigen_symm(s->symmetric, s->eigenvalues, s->work);

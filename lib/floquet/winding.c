@@ -4,6 +4,7 @@
 #include <math.h>
 
 #include "numeric/constants.h"
+#include "ricochet/elementary.h"
 
 /* Bisections of a step of length 1/2: 2^-40 is far below all relevant distances. */
 enum { MOST_HALVINGS = 40 };
@@ -23,7 +24,7 @@ static double pole_distance(const secular *s, double complex zeta) {
     gap = s->poles[j].angle - angle;
   if (low > 0)
     gap = fmin(gap, angle - s->poles[low - 1].angle);
-  return hypot(creal(zeta), gap);
+  return ric_hypot(creal(zeta), gap);
 }
 
 /* Change of log g, with the phase in half a turn. */
@@ -34,7 +35,8 @@ static double complex change(double complex from, double complex to) {
 /* Whether log g is nearly linear between three points, so that no turn of its phase is missed. */
 static bool straight(double complex first, double complex second) {
   double quarter = pi / 4;
-  return cabs(first) < quarter && cabs(second) < quarter && cabs(first - second) < quarter / 2;
+  return complex_modulus(first) < quarter && complex_modulus(second) < quarter &&
+         complex_modulus(first - second) < quarter / 2;
 }
 
 /* Phase from a to b, with the logarithms of g there. */
@@ -42,7 +44,7 @@ static double phase(secular *s, double complex a, double complex log_a, double c
                     int halvings) {
   double complex middle = (a + b) / 2, log_middle = secular_log(s, middle);
   double complex first = change(log_a, log_middle), second = change(log_middle, log_b);
-  if (cabs(b - a) <= 0.7 * pole_distance(s, middle) && straight(first, second))
+  if (complex_modulus(b - a) <= 0.7 * pole_distance(s, middle) && straight(first, second))
     return cimag(first) + cimag(second);
   if (halvings == 0 || !isfinite(creal(first + second)))
     return NAN;
@@ -52,7 +54,7 @@ static double phase(secular *s, double complex a, double complex log_a, double c
 /** Phase of g along a straight line between two zeta; NaN if it passes through a zero. */
 static double winding_phase(secular *s, double complex from, double complex to) {
   double sum = 0;
-  int steps = (int)ceil(cabs(to - from) / 0.5);
+  int steps = (int)ceil(complex_modulus(to - from) / 0.5);
   double complex here = from, log_here = secular_log(s, from);
   for (int i = 1; i <= steps && isfinite(sum); i++) {
     double complex next = from + (to - from) * ((double)i / steps), log_next = secular_log(s, next);
@@ -118,15 +120,16 @@ static void put(found *x, double re, double im) {
 
 /* The search covers slightly more than the upper half plane; zeros below are conjugates of others. */
 static void accept(found *x, double complex zeta, size_t times) {
-  double angle = cimag(zeta), size = exp(creal(zeta));
+  double angle = cimag(zeta), size = ric_exp(creal(zeta));
   for (size_t i = 0; i < times; i++)
     if (fabs(angle) < real_axis) {
       put(x, size, 0);
     } else if (fabs(angle - pi) < real_axis) {
       put(x, -size, 0);
     } else if (angle > 0 && angle < pi) {
-      put(x, size * cos(angle), size * sin(angle));
-      put(x, size * cos(angle), -size * sin(angle));
+      const double complex mu = complex_exp(zeta);
+      put(x, creal(mu), cimag(mu));
+      put(x, creal(mu), -cimag(mu));
     }
 }
 
@@ -135,8 +138,8 @@ static bool polish(secular *s, const box *b, double complex *zero) {
   double complex before = (b->low + b->high) / 2, x = before + (b->high - b->low) / 50;
   double complex unit = secular_log(s, before), value_before = 1;
   for (int i = 0; i < 60 && creal(x) > 0; i++) {
-    double complex value = cexp(secular_log(s, x) - unit), step = value * (x - before) / (value - value_before);
-    if (value == 0 || cabs(x - before) <= 1e-14 * (1 + cabs(x))) {
+    double complex value = complex_exp(secular_log(s, x) - unit), step = value * (x - before) / (value - value_before);
+    if (value == 0 || complex_modulus(x - before) <= 1e-14 * (1 + complex_modulus(x))) {
       *zero = x;
       return inside(b, x);
     }
@@ -150,7 +153,7 @@ static bool polish(secular *s, const box *b, double complex *zero) {
 }
 
 static double circle_around(const box *b) {
-  return 2 * cabs(b->high - b->low);
+  return 2 * complex_modulus(b->high - b->low);
 }
 
 /* Points on the circle, and the tolerated difference of the sums over all and over every second one: zeros outside the
@@ -163,7 +166,7 @@ static bool sample(secular *s, double complex centre, double radius, size_t coun
   double argument = 0, began = 0;
   for (int i = 0; i <= POINTS; i++) {
     double angle = 2 * pi * i / POINTS;
-    double complex value = secular_log(s, centre + CMPLX(radius * cos(angle), radius * sin(angle)));
+    double complex value = secular_log(s, centre + radius * complex_exp(CMPLX(0, angle)));
     argument = i == 0 ? cimag(value) : argument + remainder(cimag(value) - argument, 2 * pi);
     if (i == 0)
       began = argument;
@@ -177,7 +180,7 @@ static bool sample(secular *s, double complex centre, double radius, size_t coun
 static double complex power_sum(const double complex rest[POINTS], int power, int every) {
   double complex sum = 0;
   for (int i = 0; i < POINTS; i += every)
-    sum -= rest[i] * CMPLX(cos(2 * pi * i * power / POINTS), sin(2 * pi * i * power / POINTS));
+    sum -= rest[i] * complex_exp(CMPLX(0, 2 * pi * i * power / POINTS));
   return sum * power * every / POINTS;
 }
 
@@ -192,7 +195,8 @@ static bool moments(secular *s, const box *b, size_t count, double complex *mean
   double complex first = power_sum(rest, 1, 1) / k, second = power_sum(rest, 2, 1) / k;
   *mean = centre + radius * first;
   *variance = radius * radius * (second - first * first);
-  return cabs(power_sum(rest, 1, 2) / k - first) < settled && cabs(power_sum(rest, 2, 2) / k - second) < settled;
+  return complex_modulus(power_sum(rest, 1, 2) / k - first) < settled &&
+         complex_modulus(power_sum(rest, 2, 2) / k - second) < settled;
 }
 
 /* Zeros close to one another: one or two follow from their moments, more when they coincide.
@@ -201,10 +205,10 @@ static bool accept_cluster(found *x, const box *b, size_t count) {
   double complex mean, variance;
   if (circle_around(b) > (creal(b->low) + creal(b->high)) / 2 || !moments(x->s, b, count, &mean, &variance))
     return false; /* it would contain poles or other zeros */
-  bool coincide = count == 1 || cabs(variance) < coincidence * circle_around(b) * circle_around(b);
-  if (!coincide && count > 2 && cabs(b->high - b->low) > smallest)
+  bool coincide = count == 1 || complex_modulus(variance) < coincidence * circle_around(b) * circle_around(b);
+  if (!coincide && count > 2 && complex_modulus(b->high - b->low) > smallest)
     return false;
-  double complex apart = coincide || count > 2 ? 0 : csqrt(variance);
+  double complex apart = coincide || count > 2 ? 0 : complex_sqrt(variance);
   accept(x, mean + apart, apart == 0 ? count : 1);
   if (apart != 0)
     accept(x, mean - apart, 1);
@@ -249,7 +253,7 @@ static void search(found *x, const box *b, size_t count) {
     accept(x, zero, 1);
     return;
   }
-  double size = cabs(b->high - b->low);
+  double size = complex_modulus(b->high - b->low);
   if (size < small && (accept_cluster(x, b, count) || size < smallest))
     return;
   if (!divide(x, b, count, parts, counts))

@@ -2,6 +2,8 @@
 
 #include <math.h>
 
+#include "ricochet/elementary.h"
+
 /* A contact acts from this fraction of the step without its force on. */
 static const double begun_share = 0.5;
 
@@ -49,7 +51,7 @@ static double negligible_step(const hertz_contact *c, double tolerance, double n
   for (int i = 0; i < 12 && !(fabs(h - before) <= 1e-4 * h); i++) { /* converges like 0.2^i */
     before = h;
     *w = fabs(c->rate) + c->bend * h;
-    h = fmin(pow(tolerance / (c->strength * sqrt(*w)), 0.4), 0.01 * natural);
+    h = fmin(ric_pow(tolerance / (c->strength * sqrt(*w)), 0.4), 0.01 * natural);
   }
   return h;
 }

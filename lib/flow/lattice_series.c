@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "ricochet/elementary.h"
+
 /** Columns of a block that hold consecutive particles. */
 typedef struct series_run {
   size_t column, particle, count;
@@ -426,7 +428,8 @@ static void set_powers(lattice_series *s, double turn) {
 /* Series of cos(w t) and sin(w t) in x: their derivatives are the same four numbers again and again. Forces of held
  * contacts need terms beyond the order. */
 static void forcing_series(lattice_series *s, double start, double length) {
-  double phase = s->lattice->frequency * start, c = cos(phase), d = sin(phase);
+  double c, d;
+  ric_sincos(s->lattice->frequency * start, &d, &c);
   const double cosine[4] = {c, -d, -c, d}, sine[4] = {d, c, -d, -c};
   int degree = s->held_count > 0 ? RIC_POLY_DEGREE : s->block.order;
   set_powers(s, s->lattice->frequency * length);

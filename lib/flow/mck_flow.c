@@ -6,6 +6,7 @@
 #include "flow_method.h"
 #include "hertz_series.h"
 #include "model/mck_system.h"
+#include "ricochet/elementary.h"
 #include "taylor_step.h"
 
 /* The Taylor flow of M-C-K systems, for the files that share it. */
@@ -181,7 +182,9 @@ typedef struct harmonic {
 static harmonic harmonic_at(const mck_system *s, double time) {
   if (!s->force_cos && !s->force_sin)
     return (harmonic){0};
-  return (harmonic){cos(s->frequency * time), sin(s->frequency * time)};
+  harmonic h;
+  ric_sincos(s->frequency * time, &h.sine, &h.cosine);
+  return h;
 }
 
 static void harmonic_next(harmonic *w, double turn, int j) {

@@ -6,6 +6,7 @@
 #include <math.h>
 
 #include "numeric/simd.h"
+#include "ricochet/elementary.h"
 
 enum { LEAST_ORDER = 4, MOST_ORDER = 30, FIRST_COEFFICIENTS = 4 };
 
@@ -36,15 +37,16 @@ static const double resolution = 1e-12;
 /* Series with larger first coefficients may overflow when evaluated. */
 static const double most_size = DBL_MAX * 1e-6;
 
-/* ln n!. (lgamma itself writes a variable of the process.) */
 static double log_factorial(int n) {
-  int sign;
-  return lgamma_r(n + 1.0, &sign);
+  double sum = 0;
+  for (int k = 2; k <= n; k++)
+    sum += ric_log(k);
+  return sum;
 }
 
 int taylor_order(double tolerance) {
   int order = LEAST_ORDER;
-  double term = pow(longest_reach, 5) / 120; /* of order + 1 */
+  double term = ric_pow(longest_reach, 5) / 120; /* of order + 1 */
   while (order < MOST_ORDER && term > share * tolerance) {
     order++;
     term *= longest_reach / (order + 1);
@@ -53,14 +55,14 @@ int taylor_order(double tolerance) {
 }
 
 double taylor_reach(double tolerance, int order) {
-  double reach = exp((log(share * tolerance) + log_factorial(order + 1)) / (order + 1));
+  double reach = ric_exp((ric_log(share * tolerance) + log_factorial(order + 1)) / (order + 1));
   return fmin(reach, longest_reach);
 }
 
 /** Longest step times |s| for tangent vectors of linear motions, independent of the motion itself: 3.3 at order 26. A
  *  motion that does not excite fast modes gives no bound for tangent vectors that do. */
 static double taylor_carried_reach(double tolerance, int order) {
-  return exp((log(fmax(carried_error, tolerance)) + log_factorial(order + 1)) / (order + 1));
+  return ric_exp((ric_log(fmax(carried_error, tolerance)) + log_factorial(order + 1)) / (order + 1));
 }
 
 double taylor_rate_bound(double stiffness, double damping) {
@@ -123,7 +125,7 @@ double taylor_step_factor(const taylor_decay *d, int order, double tolerance) {
   double allowed = measured_share * tolerance * d->change, factor = most_growth;
   for (int k = 0; k < 2; k++)
     if (d->tail[k] > 0)
-      factor = fmin(factor, pow(allowed / d->tail[k], 1.0 / (order - 2 + k)));
+      factor = fmin(factor, ric_pow(allowed / d->tail[k], 1.0 / (order - 2 + k)));
   return fmin(factor, inside * d->nearest_zero);
 }
 

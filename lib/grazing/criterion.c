@@ -12,6 +12,7 @@
 #include "numeric/vector.h"
 #include "numeric/linear.h"
 #include "numeric/number_block.h"
+#include "ricochet/elementary.h"
 #include "ricochet/grazing_criterion.h"
 #include "numeric/gsl_quiet.h"
 
@@ -284,7 +285,7 @@ static void name_multiplier(ric_complex z, char *text, size_t size) {
 /* Tests conditions on the dominant multiplier. @returns whether one fails */
 static bool spectrum_fails(const criterion_work *w, ric_grazing_criterion *c) {
   const dominant_multiplier *d = &w->dominant;
-  double modulus = hypot(c->dominant.re, c->dominant.im);
+  double modulus = ric_hypot(c->dominant.re, c->dominant.im);
   char name[64];
   name_multiplier(c->dominant, name, sizeof name);
   if (!(modulus < 1 - circle_tol))
@@ -414,7 +415,7 @@ static void fill_departure(const criterion_work *w, const ric_grazing_criterion 
     departure[k] = c->first_negative != SIZE_MAX ? w->map.scale[k] * w->run.x[k] : NAN;
   most = largest(departure, n);
   for (size_t k = 0; k < n; k++)
-    sum = hypot(sum, departure[k] / most);
+    sum = ric_hypot(sum, departure[k] / most);
   for (size_t k = 0; k < n; k++)
     departure[k] = departure[k] / most / sum;
 }
@@ -456,7 +457,8 @@ ric_status ric_grazing_predict_window(const ric_grazing_criterion *criterion, do
   if (period < 2)
     return ric_fail(error, RIC_EINVAL, "period = %zu, expected at least 2", period);
   double lambda = criterion->dominant.re, reach = criterion->alpha * stretch;
-  double at_border = reach * pow(lambda, (double)(period - 2)), at_flip = reach * pow(lambda, (double)(period - 1));
+  double at_border = reach * ric_pow(lambda, (double)(period - 2)),
+         at_flip = reach * ric_pow(lambda, (double)(period - 1));
   *border = (1 - lambda) * at_border * at_border;
   *flip = 0.75 * at_flip * at_flip;
   return RIC_OK;

@@ -13,6 +13,7 @@
 
 #include "numeric/number_block.h"
 #include "numeric/vector.h"
+#include "ricochet/elementary.h"
 
 /* Coordinates that L does not couple are balanced by eta and xi only, by at most 2 to this. */
 enum { most_exponent = 100 };
@@ -128,7 +129,7 @@ void dominant_clear(dominant_multiplier *d) {
 /* --- the multiplier ----------------------------------------------------------------------------------------------- */
 
 static double modulus_of(const gsl_vector_complex *values, size_t i) {
-  return hypot(values->data[2 * i], values->data[2 * i + 1]);
+  return ric_hypot(values->data[2 * i], values->data[2 * i + 1]);
 }
 
 /* Of the multipliers with the largest modulus, to the tolerance, the rightmost one: a positive one is preferred. */
@@ -289,12 +290,16 @@ static void evaluate_coefficient(coefficient_run *run) {
   }
 }
 
+static void noise_bound_init(noise_bound *noise, double rate) {
+  *noise = (noise_bound){.rate = rate, .log_rate = ric_log2(rate), .most = -INFINITY};
+}
+
 ric_status coefficient_run_init(coefficient_run *run, const balanced_map *map, const dominant_multiplier *dominant,
                                 ric_error *error) {
   size_t n = map->n, used = 0;
   double *block = balanced_map_room(n, 1, 3);
   double modulus = dominant->modulus;
-  *run = (coefficient_run){.map = map, .modulus = modulus, .uncertain = log2(dominant->uncertain)};
+  *run = (coefficient_run){.map = map, .uncertain = ric_log2(dominant->uncertain)};
   if (!block)
     return ric_fail(error, RIC_ENOMEM, "no memory for the coefficients of a map of size %zu", n);
   run->x = number_block_take(block, &used, n);
@@ -302,8 +307,9 @@ ric_status coefficient_run_init(coefficient_run *run, const balanced_map *map, c
   run->next = number_block_take(block, &used, n);
   memcpy(run->x, map->xi, n * sizeof *run->x);
   memcpy(run->row, map->eta, n * sizeof *run->row);
-  run->noise[0] = (noise_bound){.rate = modulus > 0 ? modulus : map->size, .most = -INFINITY};
-  run->noise[1] = (noise_bound){.rate = map->size, .most = -INFINITY};
+  run->log_modulus = ric_log2(modulus);
+  noise_bound_init(&run->noise[0], modulus > 0 ? modulus : map->size);
+  noise_bound_init(&run->noise[1], map->size);
   evaluate_coefficient(run);
   return RIC_OK;
 }
@@ -328,11 +334,11 @@ static int multiply(coefficient_run *run, double *x, CBLAS_TRANSPOSE_t transpose
 }
 
 static void add_noise(coefficient_run *run) {
-  double row = log2(length(run->row, run->map->n)) + (double)run->row_exponent;
+  double row = ric_log2(length(run->row, run->map->n)) + (double)run->row_exponent;
   double x = run->map->size * length(run->x, run->map->n);
   for (size_t k = 0; k < 2; k++) {
     noise_bound *noise = &run->noise[k];
-    noise->most = fmax(noise->most, run->i > 0 ? row - (double)run->i * log2(noise->rate) : row);
+    noise->most = fmax(noise->most, run->i > 0 ? row - (double)run->i * noise->log_rate : row);
     noise->sum = noise->rate * noise->sum + x;
   }
 }
@@ -349,14 +355,14 @@ void coefficient_run_advance(coefficient_run *run) {
 }
 
 static double noise_of(const noise_bound *noise) {
-  double reach = exp2(noise->most) * noise->sum;
+  double reach = ric_exp2(noise->most) * noise->sum;
   return isnan(reach) ? INFINITY : reach;
 }
 
 /* Uncertainty of the part of the dominant multiplier. */
 static double uncertain_part(const coefficient_run *run) {
   double reach = run->uncertain - (double)run->x_exponent;
-  return exp2(run->i > 0 ? reach + (double)run->i * log2(run->modulus) : reach);
+  return ric_exp2(run->i > 0 ? reach + (double)run->i * run->log_modulus : reach);
 }
 
 int coefficient_run_sign(const coefficient_run *run, double zero_tol) {

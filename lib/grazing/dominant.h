@@ -77,9 +77,9 @@ bool dominant_is_coupled(const dominant_multiplier *dominant);
  */
 
 typedef struct noise_bound {
-  double rate; /* r */
-  double sum;  /* s_i, in the units of x */
-  double most; /* log2 G_i */
+  double rate, log_rate; /* r, log2 r */
+  double sum;            /* s_i, in the units of x */
+  double most;           /* log2 G_i */
 } noise_bound;
 
 typedef struct coefficient_run {
@@ -88,10 +88,10 @@ typedef struct coefficient_run {
   double *x, *row; /* [n] L^i xi and eta L^i, divided by powers of two so that their largest entries are in [1/2, 1) */
   double *next;    /* [n] work */
   long x_exponent, row_exponent;
-  double value;     /* c_i and ... */
-  double terms;     /* ... the sum of the moduli of its terms, over 2^x_exponent */
-  double modulus;   /* |lambda| */
-  double uncertain; /* log2 of the uncertainty of the dominant multiplier's part */
+  double value;       /* c_i and ... */
+  double terms;       /* ... the sum of the moduli of its terms, over 2^x_exponent */
+  double log_modulus; /* log2 |lambda| */
+  double uncertain;   /* log2 of the uncertainty of the dominant multiplier's part */
   noise_bound noise[2];
 } coefficient_run;
 

@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "ricochet/elementary.h"
+
 /* --- storage ------------------------------------------------------------------------------------------------------ */
 
 ric_status ric_grazing_map_init(ric_grazing_map *map, size_t size, ric_error *error) {
@@ -139,13 +141,13 @@ double ric_grazing_limit_map(double rho, double lambda, double delta, size_t *co
   if (!(rho > 0 && lambda > 0 && lambda < 1 && delta <= 1 && isfinite(first)))
     return NAN;
   if (first > 1) {
-    N = ceil(log(first) / -log(lambda));
-    if (first * pow(lambda, N) > 1) /* the logarithms are rounded: N may be one off */
+    N = ceil(ric_log(first) / -ric_log(lambda));
+    if (first * ric_pow(lambda, N) > 1) /* the logarithms are rounded: N may be one off */
       N++;
-    else if (N > 1 && first * pow(lambda, N - 1) <= 1)
+    else if (N > 1 && first * ric_pow(lambda, N - 1) <= 1)
       N--;
   }
   if (count)
     *count = (size_t)N;
-  return first * pow(lambda, N); /* [FN97] (5.14) */
+  return first * ric_pow(lambda, N); /* [FN97] (5.14) */
 }

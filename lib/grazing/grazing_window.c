@@ -11,6 +11,7 @@
 
 #include "numeric/constants.h"
 #include "one_impact.h"
+#include "ricochet/elementary.h"
 #include "ricochet/grazing_map.h"
 #include "numeric/gsl_quiet.h"
 
@@ -49,16 +50,17 @@ typedef struct terms {
 static double factorise(search *s, double theta) {
   const gsl_matrix *power = s->orbits->power;
   size_t m = power->size1;
-  double determinant = 1;
+  double determinant = 1, sine, cosine;
+  ric_sincos(theta, &sine, &cosine);
   gsl_matrix_set_zero(s->factors);
   for (size_t i = 0; i < m; i++) {
     for (size_t j = 0; j < m; j++) {
-      double entry = (i == j) * cos(theta) - gsl_matrix_get(power, i, j);
+      double entry = (i == j) * cosine - gsl_matrix_get(power, i, j);
       gsl_matrix_set(s->factors, i, j, entry);
       gsl_matrix_set(s->factors, m + i, m + j, entry);
     }
-    gsl_matrix_set(s->factors, i, m + i, -sin(theta));
-    gsl_matrix_set(s->factors, m + i, i, sin(theta));
+    gsl_matrix_set(s->factors, i, m + i, -sine);
+    gsl_matrix_set(s->factors, m + i, i, sine);
   }
   gsl_linalg_QR_decomp(s->factors, s->reflectors);
   for (size_t i = 0; i < 2 * m; i++)
@@ -93,7 +95,7 @@ static terms terms_at(search *s, double theta) {
 /* The polynomial, at cos theta. */
 static double mismatch(double theta, void *user) {
   terms x = terms_at(user, theta);
-  return x.determinant * (x.B[1] * x.A[0] - x.B[0] * x.A[1]) / sin(theta);
+  return x.determinant * (x.B[1] * x.A[0] - x.B[0] * x.A[1]) / ric_sin(theta);
 }
 
 static double depth_of_dip(double theta, void *user) {
@@ -257,7 +259,7 @@ static double middle_of(double low, double high) {
 
 /* Width in ln d; infinite if the range contains or touches d = 0. */
 static double width_of(double low, double high) {
-  return low * high > 0 ? fabs(log(high / low)) : INFINITY;
+  return low * high > 0 ? fabs(ric_log(high / low)) : INFINITY;
 }
 
 /* No multiplier crosses the unit circle between two cuts: one orbit decides for all. At a cut with both sides stable a

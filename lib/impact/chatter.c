@@ -3,6 +3,7 @@
  * instead of being followed. */
 #include <math.h>
 
+#include "ricochet/elementary.h"
 #include "trajectory.h"
 
 /* Rates of the state after a short time along its current rates. */
@@ -51,7 +52,7 @@ static double first_duration(const impact *c, double acceleration) {
  * fourth root of the tolerance: following a series further would lose digits. */
 static double chatter_limit(const ric_trajectory *tr) {
   double size = tr->locator.noise / tr->noise;
-  return fmax(tr->options.chatter_tol, pow(tr->flow->options.tolerance * size, 0.25));
+  return fmax(tr->options.chatter_tol, ric_pow(tr->flow->options.tolerance * size, 0.25));
 }
 
 /* Whether a bounce loses no more height than errors of the flow can restore: these would sustain the series for ever.

@@ -5,10 +5,11 @@
 #include "image_ring.h"
 #include "numeric/constants.h"
 #include "ricochet/chain.h"
+#include "ricochet/elementary.h"
 #include "ricochet/resonance.h"
 
 double ric_dispersion(double gamma, double wave_number) {
-  double s = sin(wave_number / 2);
+  double s = ric_sin(wave_number / 2);
   return sqrt(1 + 4 * gamma * s * s); /* [JAP] (12) */
 }
 
@@ -41,11 +42,11 @@ double ric_chain_frequency_max(const ric_chain *chain) {
 
 /* cos(pi a / b) for whole a, reduced first so that large particle numbers cost no digits. */
 static double cos_pi(unsigned long long a, unsigned long long b) {
-  return cos(pi * (double)(a % (2 * b)) / (double)b);
+  return ric_cos(pi * (double)(a % (2 * b)) / (double)b);
 }
 
 static double sin_pi(unsigned long long a, unsigned long long b) {
-  return sin(pi * (double)(a % (2 * b)) / (double)b);
+  return ric_sin(pi * (double)(a % (2 * b)) / (double)b);
 }
 
 double ric_chain_mode_shape(const ric_chain *chain, size_t mode, size_t particle) {
@@ -81,7 +82,7 @@ static void collect(collection *c, double parameter, size_t mode, unsigned harmo
 /* d omega^2 / d gamma of a mode, (12). */
 static double coupling_factor(const ric_chain *chain, size_t mode) {
   ric_chain unit = {.particles = chain->particles, .ends = chain->ends, .gamma = 1};
-  double s = sin(ric_chain_wave_number(chain, mode) / 2);
+  double s = ric_sin(ric_chain_wave_number(chain, mode) / 2);
   return 4 * image_ring_gamma(&unit) * s * s;
 }
 

@@ -8,6 +8,7 @@
 #include "numeric/vector.h"
 #include "numeric/number_block.h"
 #include "numeric/path_derivative.h"
+#include "ricochet/elementary.h"
 #include "system_model.h"
 #include "user_gap.h"
 
@@ -341,7 +342,7 @@ static const char *follow_down(const first_order *s, size_t obstacle, double t, 
   TRY_TEXT(trial(s, obstacle, t, s->foot, d, far, s->limit));
   found->moved = far * largest(s->limit, s->model.states);
   found->rate = -far;
-  found->power = log(coarse / found->moved) / log(step / far);
+  found->power = ric_log(coarse / found->moved) / ric_log(step / far);
   return NULL;
 }
 

@@ -117,6 +117,10 @@ void lattice_transform_free(double *x) {
   fftw_free(x);
 }
 
+/* Codelets for any processor: those with vector instructions round otherwise, and FFTW takes what the processor has.
+ * For real transforms it takes scalar ones in any case, so this costs nothing. */
+static const unsigned plan_flags = FFTW_ESTIMATE | FFTW_NO_SIMD;
+
 /* FFTW's planner keeps what it has learned for all plans of the process, unguarded: one thread plans at a time. Plans
  * are used without it. */
 static atomic_flag planning = ATOMIC_FLAG_INIT;
@@ -140,10 +144,10 @@ static void make_plans(lattice_transform *t, const ric_chain *chain, double *x) 
     back = FFTW_REDFT01;
   }
   lock_planner();
-  t->forward = fftw_plan_r2r_1d(n, x, x, there, FFTW_ESTIMATE);
-  t->inverse = fftw_plan_r2r_1d(n, x, x, back, FFTW_ESTIMATE);
+  t->forward = fftw_plan_r2r_1d(n, x, x, there, plan_flags);
+  t->inverse = fftw_plan_r2r_1d(n, x, x, back, plan_flags);
   if (chain->ends != RIC_ENDS_PERIODIC)
-    t->kernel = fftw_plan_r2r_1d((int)(t->sites / 2 + 1), x, x, FFTW_REDFT00, FFTW_ESTIMATE);
+    t->kernel = fftw_plan_r2r_1d((int)(t->sites / 2 + 1), x, x, FFTW_REDFT00, plan_flags);
   unlock_planner();
 }
 

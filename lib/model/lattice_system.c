@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "ricochet/elementary.h"
 #include "ricochet/lattice.h"
 
 ric_lattice ric_lattice_default(size_t particles, ric_ends ends) {
@@ -115,15 +116,15 @@ static double own_force(const ric_lattice *lattice, size_t i, double q, double v
 }
 
 double lattice_force(const ric_lattice *lattice, size_t particle, double t, const double *q, const double *v) {
-  double phase = lattice->frequency * t, left = link_force(lattice, particle, q, v);
-  double right = link_force(lattice, particle + 1, q, v);
-  return own_force(lattice, particle, q[particle], v[particle], cos(phase), sin(phase)) - left + right;
+  double left = link_force(lattice, particle, q, v), right = link_force(lattice, particle + 1, q, v), cosine, sine;
+  ric_sincos(lattice->frequency * t, &sine, &cosine);
+  return own_force(lattice, particle, q[particle], v[particle], cosine, sine) - left + right;
 }
 
 void ric_lattice_acceleration(const ric_lattice *lattice, double t, const double *q, const double *v,
                               double *acceleration) {
-  double cosine = cos(lattice->frequency * t), sine = sin(lattice->frequency * t);
-  double left = link_force(lattice, 0, q, v);
+  double left = link_force(lattice, 0, q, v), cosine, sine;
+  ric_sincos(lattice->frequency * t, &sine, &cosine);
   for (size_t i = 0; i < lattice->particles; i++) {
     double right = link_force(lattice, i + 1, q, v);
     acceleration[i] = (own_force(lattice, i, q[i], v[i], cosine, sine) - left + right) / ric_lattice_mass(lattice, i);

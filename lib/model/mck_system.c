@@ -8,6 +8,7 @@
 
 #include <gsl/gsl_linalg.h>
 
+#include "ricochet/elementary.h"
 #include "ricochet/mck.h"
 
 /* Entries of a computed mass matrix differ by rounding from those of its transpose; larger differences are errors. */
@@ -282,13 +283,15 @@ static double pressure(const ric_obstacle *o, const unsigned char *contact, size
 }
 
 static double free_acceleration(const mck_system *s, size_t i, double t, const double *q, const double *u) {
-  return forcing(s, i, cos(s->frequency * t), sin(s->frequency * t)) - mck_rows_dot(&s->stiffness, i, q) -
-         mck_rows_dot(&s->damping, i, u);
+  double cosine, sine;
+  ric_sincos(s->frequency * t, &sine, &cosine);
+  return forcing(s, i, cosine, sine) - mck_rows_dot(&s->stiffness, i, q) - mck_rows_dot(&s->damping, i, u);
 }
 
 static void free_accelerations(const mck_system *s, const unsigned char *contact, double t, const double *q,
                                const double *u, double *acceleration) {
-  double cosine = cos(s->frequency * t), sine = sin(s->frequency * t);
+  double cosine, sine;
+  ric_sincos(s->frequency * t, &sine, &cosine);
   for (size_t i = 0; i < s->base.coordinates; i++)
     acceleration[i] = forcing(s, i, cosine, sine);
   mck_rows_apply(&s->stiffness, -1, q, acceleration);

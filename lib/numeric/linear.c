@@ -8,6 +8,8 @@
 #include <gsl/gsl_blas.h>
 #include <gsl/gsl_linalg.h>
 
+#include "ricochet/elementary.h"
+
 /* A pivot below this fraction of its diagonal entry is rounding. */
 static const double dependent = 1e-12;
 
@@ -156,7 +158,7 @@ void orthonormal_make(orthonormal_work *w, double *x, double *growth) {
   for (size_t k = 0; k < count; k++) {
     double left = fabs(gsl_matrix_get(w->factors, k, k));
     bool gone = !(left > dependence_share * growth[k]);
-    growth[k] = gone ? -INFINITY : log(left);
+    growth[k] = gone ? -INFINITY : ric_log(left);
     copy_column(w, k, gone, &vectors.matrix);
   }
 }

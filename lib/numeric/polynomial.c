@@ -5,6 +5,7 @@
 #include <stddef.h>
 
 #include "constants.h"
+#include "ricochet/elementary.h"
 #include "ricochet/polynomial.h"
 #include "simd.h"
 
@@ -13,7 +14,7 @@ enum {
 };
 
 double chebyshev_point(int k, int degree) {
-  return (1 - cos(pi * k / degree)) / 2;
+  return (1 - ric_cos(pi * k / degree)) / 2;
 }
 
 void chebyshev_coefficients(const double *values, int degree, double *a) {
@@ -21,7 +22,7 @@ void chebyshev_coefficients(const double *values, int degree, double *a) {
     double sum = 0;
     for (int k = 0; k <= degree; k++) {
       double weight = k == 0 || k == degree ? 0.5 : 1;
-      sum += weight * values[k] * cos(pi * j * (degree - k) / degree); /* x = 0 is the angle pi */
+      sum += weight * values[k] * ric_cos(pi * j * (degree - k) / degree); /* x = 0 is the angle pi */
     }
     a[j] = sum * (j == 0 || j == degree ? 1 : 2) / degree;
   }

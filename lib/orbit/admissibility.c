@@ -10,6 +10,7 @@
 #include "impulse.h"
 #include "model/image_ring.h"
 #include "numeric/constants.h"
+#include "ricochet/elementary.h"
 #include "solver.h"
 
 const char *ric_outcome_name(ric_outcome outcome) {
@@ -284,7 +285,7 @@ static ric_status find_gaps(motion *m, const unit_cell *cell, const boundary_sta
 /* Wave index (a real number) at which the image ring has a frequency, clamped to the band. */
 static double wave_index(const ric_chain *chain, double frequency) {
   double s2 = (frequency * frequency - 1) / (4 * image_ring_gamma(chain));
-  return asin(sqrt(fmin(fmax(s2, 0), 1))) / pi * (double)image_ring_sites(chain);
+  return ric_asin(sqrt(fmin(fmax(s2, 0), 1))) / pi * (double)image_ring_sites(chain);
 }
 
 static size_t add_wave(const ric_chain *chain, size_t wave, unsigned harmonic, border_mode *modes, size_t count) {

@@ -13,6 +13,7 @@
 
 #include "impact_modes.h"
 #include "numeric/constants.h"
+#include "ricochet/elementary.h"
 #include "numeric/gsl_quiet.h"
 
 enum { DEFAULT_SAMPLES = 64, MOST_SAMPLES = 1000000, MOST_ITERATIONS = 200, DIP_STEPS = 40 };
@@ -166,7 +167,7 @@ static void sample_margins(search *s, double low, double high) {
   high -= nearest;
   add_sample(s, low);
   for (size_t i = 0; i < s->samples; i++) /* denser at the ends, where amplitudes or impulses change fast */
-    add_sample(s, low + (high - low) * (1 - cos(pi * ((double)i + 0.5) / (double)s->samples)) / 2);
+    add_sample(s, low + (high - low) * (1 - ric_cos(pi * ((double)i + 0.5) / (double)s->samples)) / 2);
   add_sample(s, high);
   for (size_t i = 1, count = s->count; i + 1 < count; i++) {
     const sample *x = &s->list[i];

@@ -12,6 +12,7 @@
 #include "numeric/constants.h"
 #include "numeric/number_block.h"
 #include "numeric/vector.h"
+#include "ricochet/elementary.h"
 #include "ricochet/normal_modes.h"
 #include "ricochet/polynomial.h"
 
@@ -95,7 +96,7 @@ static void separate_multiple(ric_impact_modes *m, size_t first, size_t count) {
   double *shape = m->shape + first * n, *s = m->q, length = 0, mean = 0;
   for (size_t a = 0; a < count; a++) {
     s[a] = shape[a * n + m->hit];
-    length = hypot(length, s[a]);
+    length = ric_hypot(length, s[a]);
     mean += m->frequency[first + a] / (double)count;
   }
   for (size_t a = 0; a < count; a++)
@@ -208,8 +209,11 @@ typedef struct periodic_response {
 
 /* Term of S; infinite at a resonance. */
 static double term(const ric_impact_modes *m, size_t j, double period) {
-  double half = m->frequency[j] * period / 2;
-  return m->phi_hit[j] == 0 ? 0 : m->phi_hit[j] * m->phi_hit[j] * cos(half) / (2 * m->frequency[j] * sin(half));
+  if (m->phi_hit[j] == 0)
+    return 0;
+  double sine, cosine;
+  ric_sincos(m->frequency[j] * period / 2, &sine, &cosine);
+  return m->phi_hit[j] * m->phi_hit[j] * cosine / (2 * m->frequency[j] * sine);
 }
 
 double response_balance(const ric_impact_modes *modes, double period) {
@@ -225,7 +229,7 @@ double response_balance(const ric_impact_modes *modes, double period) {
 /* l where w_j T = 2 pi l, otherwise 0. */
 static double harmonic_of(const ric_impact_modes *m, size_t j, double period, double tolerance) {
   double turns = m->frequency[j] * period / (2 * pi), l = round(turns);
-  bool is = fabs(turns - l) <= tolerance || sin(m->frequency[j] * period / 2) == 0;
+  bool is = fabs(turns - l) <= tolerance || ric_sin(m->frequency[j] * period / 2) == 0;
   return is ? l : 0;
 }
 
@@ -253,7 +257,7 @@ static void set_resonant_amplitudes(ric_impact_modes *m, double tolerance, const
     m->amplitude[j] = share;
   }
   for (size_t j = 0; j < m->n; j++)
-    m->amplitude[j] *= position / reached * copysign(1, cos(m->frequency[j] * r->period / 2));
+    m->amplitude[j] *= position / reached * copysign(1, ric_cos(m->frequency[j] * r->period / 2));
 }
 
 static void set_driven_amplitudes(ric_impact_modes *m, periodic_response *r) {
@@ -262,9 +266,9 @@ static void set_driven_amplitudes(ric_impact_modes *m, periodic_response *r) {
     sum += term(m, j, r->period);
   r->impulse = m->obstacles[m->obstacle].position / sum;
   for (size_t j = 0; j < m->n; j++)
-    m->amplitude[j] = m->phi_hit[j] == 0
-                          ? 0
-                          : r->impulse * m->phi_hit[j] / (2 * m->frequency[j] * sin(m->frequency[j] * r->period / 2));
+    m->amplitude[j] = m->phi_hit[j] == 0 ? 0
+                                         : r->impulse * m->phi_hit[j] /
+                                               (2 * m->frequency[j] * ric_sin(m->frequency[j] * r->period / 2));
 }
 
 /** @param resonance_tol  on |w_j T / (2 pi) - l|; 0: only periods at which a sine is zero are resonant. Sets
@@ -295,8 +299,9 @@ static void response_state(const ric_impact_modes *modes, const periodic_respons
   if (v)
     memset(v, 0, n * sizeof *v);
   for (size_t j = 0; j < n; j++) {
-    double phase = modes->frequency[j] * (response->period / 2 - t);
-    double along = modes->amplitude[j] * cos(phase), rate = modes->amplitude[j] * modes->frequency[j] * sin(phase);
+    double sine, cosine;
+    ric_sincos(modes->frequency[j] * (response->period / 2 - t), &sine, &cosine);
+    double along = modes->amplitude[j] * cosine, rate = modes->amplitude[j] * modes->frequency[j] * sine;
     for (size_t i = 0; modes->amplitude[j] != 0 && i < n; i++) {
       q[i] += along * modes->shape[j * n + i];
       if (v)
@@ -341,11 +346,8 @@ static half_period cut_half_period(ric_impact_modes *m, double period) {
 }
 
 static void begin_segment(ric_impact_modes *m, double period, double start) {
-  for (size_t j = 0; j < m->n; j++) {
-    double phase = m->frequency[j] * (period / 2 - start);
-    m->cosine[j] = cos(phase);
-    m->sine[j] = sin(phase);
-  }
+  for (size_t j = 0; j < m->n; j++)
+    ric_sincos(m->frequency[j] * (period / 2 - start), &m->sine[j], &m->cosine[j]);
 }
 
 /* cos(phase - angle x) = cos(phase) cos(angle x) + sin(phase) sin(angle x), mode by mode. */

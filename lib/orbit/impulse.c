@@ -10,6 +10,7 @@
 
 #include "model/image_ring.h"
 #include "numeric/constants.h"
+#include "ricochet/elementary.h"
 
 /* Waves with n |sin d| below it are separated from the response. Their remainder in the contact matrix, 2 / n times
  * 1 / (2 omega |sin d|), is then of order one, so that no digits cancel there unless the matrix is singular. */
@@ -29,7 +30,7 @@ static size_t last_wave(const ric_chain *chain) {
 static void tabulate(response *r, const ric_chain *chain) {
   size_t sites = image_ring_sites(chain);
   for (size_t j = 0; j <= sites / 2; j++) {
-    double s = sin(pi * (double)j / (double)sites);
+    double s = ric_sin(pi * (double)j / (double)sites);
     r->sine2[j] = 4 * s * s;
   }
 }
@@ -91,7 +92,7 @@ static void insert_near_wave(response *r, near_wave wave) {
 static void subtract_near_waves(response *r) {
   for (size_t i = 0; i < r->near_count; i++) {
     const near_wave *w = &r->near[i];
-    r->start[w->wave] = -tan(w->distance / 2) / (2 * w->omega);
+    r->start[w->wave] = -ric_tan(w->distance / 2) / (2 * w->omega);
     r->half[w->wave] = 0;
   }
 }
@@ -107,9 +108,10 @@ static void response_compute(response *r, const ric_chain *chain, double period,
   for (size_t j = first_wave(chain); j <= last_wave(chain); j++) {
     double omega = sqrt(1 + gamma * r->sine2[j]); /* (12) */
     double x = omega * period / 2, l = nearbyint(x / pi), d = x - pi * l;
-    double s = sin(d), sign = fmod(l, 2) == 0 ? 1 : -1;
+    double s, c, sign = fmod(l, 2) == 0 ? 1 : -1;
+    ric_sincos(d, &s, &c);
     r->half[j] = sign / (2 * omega * s);
-    r->start[j] = cos(d) / (2 * omega * s);
+    r->start[j] = c / (2 * omega * s);
     int close = l >= 1 && fabs(s) < near;
     if (close)
       insert_near_wave(r, (near_wave){.wave = j, .harmonic = (unsigned)l, .omega = omega, .distance = d});
@@ -175,8 +177,10 @@ static void list_border(contact_system *c, const unit_cell *cell, const response
       size_t modes[2], count = response_modes(&cell->chain, w->wave, modes);
       group += !exact;
       for (size_t k = 0; k < count; k++)
-        c->border[c->border_count++] = (border_mode){
-            .mode = modes[k], .harmonic = w->harmonic, .stiffness = 2 * w->omega * sin(w->distance), .group = group};
+        c->border[c->border_count++] = (border_mode){.mode = modes[k],
+                                                     .harmonic = w->harmonic,
+                                                     .stiffness = 2 * w->omega * ric_sin(w->distance),
+                                                     .group = group};
     }
 }
 
@@ -184,7 +188,8 @@ static void list_border(contact_system *c, const unit_cell *cell, const response
  * rotation in closed form: GSL's workspace would be allocated in a hot loop. */
 static int diagonalise(double *gram, size_t count, double *values, double *vectors) {
   if (count <= 2) {
-    double angle = count == 2 ? atan2(2 * gram[1], gram[0] - gram[3]) / 2 : 0, c = cos(angle), s = sin(angle);
+    double s, c;
+    ric_sincos(count == 2 ? ric_atan2(2 * gram[1], gram[0] - gram[3]) / 2 : 0, &s, &c);
     double turn[4] = {c, -s, s, c};
     for (size_t i = 0; i < count * count; i++)
       vectors[i] = turn[i];

@@ -14,6 +14,7 @@
 #include "motion.h"
 #include "numeric/constants.h"
 #include "numeric/linear.h"
+#include "ricochet/elementary.h"
 #include "ricochet/orbit.h"
 #include "unit_cell.h"
 #include "admissibility.h"
@@ -137,7 +138,9 @@ static int exponentiate(dense_equations *d, const ric_chain *chain, double t) {
   for (int block = 0; block < 3 && !code; block++) {
     for (size_t j = 0; j < n; j++) { /* a := modes times the function of the frequencies */
       double omega = sqrt(gsl_vector_get(&values.vector, j));
-      double f = block == 0 ? cos(omega * t) : block == 1 ? sin(omega * t) / omega : -omega * sin(omega * t);
+      double sine, cosine;
+      ric_sincos(omega * t, &sine, &cosine);
+      double f = block == 0 ? cosine : block == 1 ? sine / omega : -omega * sine;
       for (size_t i = 0; i < n; i++)
         gsl_matrix_set(d->a, i, j, f * gsl_matrix_get(d->modes, i, j));
     }

@@ -13,6 +13,7 @@
 #include "numeric/vector.h"
 #include "numeric/newton.h"
 #include "numeric/number_block.h"
+#include "ricochet/elementary.h"
 #include "ricochet/ritz.h"
 #include "numeric/gsl_quiet.h"
 
@@ -22,20 +23,19 @@
 enum { SAMPLES = 16 };
 
 void ritz_functions_at(const ric_ritz *r, double phase, double *cosine, double *sine) {
-  for (size_t m = 0; m < ritz_width(r); m++) {
-    cosine[m] = cos(ritz_number(r, m) * phase);
-    sine[m] = sin(ritz_number(r, m) * phase);
-  }
+  for (size_t m = 0; m < ritz_width(r); m++)
+    ric_sincos(ritz_number(r, m) * phase, &sine[m], &cosine[m]);
 }
 
 /* sum_i c_i cos(i phase) over the functions, and its first two derivatives by the phase. */
 static void sum_series(const ric_ritz *r, const double *c, double phase, double sums[3]) {
   sums[0] = sums[1] = sums[2] = 0;
   for (size_t m = 0; m < ritz_width(r); m++) {
-    double number = ritz_number(r, m), wave = c[m] * cos(number * phase);
-    sums[0] += wave;
-    sums[1] -= number * c[m] * sin(number * phase);
-    sums[2] -= number * number * wave;
+    double number = ritz_number(r, m), sine, cosine;
+    ric_sincos(number * phase, &sine, &cosine);
+    sums[0] += c[m] * cosine;
+    sums[1] -= number * c[m] * sine;
+    sums[2] -= number * number * c[m] * cosine;
   }
 }
 
@@ -336,7 +336,7 @@ static ric_status check_obstacle(const ric_system *s, size_t obstacle, ric_error
  * below 1e-16 from 2 P = k + 12 k^(1/3) on. */
 static size_t rule_for(size_t functions) {
   double most = 2 * pi * (double)functions;
-  return (size_t)ceil(most / 2 + 6 * cbrt(most));
+  return (size_t)ceil(most / 2 + 6 * ric_cbrt(most));
 }
 
 static size_t choose_points(const ric_ritz_options *o) {
@@ -386,7 +386,7 @@ static ric_status tabulate(ric_ritz *r, ric_error *error) {
     gsl_integration_glfixed_point(0, 0.5, p, &r->tau[p], &r->weight[p], table);
     r->weight[p] *= 2;
     for (size_t m = 0; m < r->stride; m++)
-      r->psi[p * r->stride + m] = cos(2 * pi * ritz_number(r, m) * r->tau[p]);
+      r->psi[p * r->stride + m] = ric_cos(2 * pi * ritz_number(r, m) * r->tau[p]);
   }
   gsl_integration_glfixed_table_free(table);
   return RIC_OK;

@@ -6,6 +6,7 @@
 #include <gsl/gsl_linalg.h>
 
 #include "numeric/constants.h"
+#include "ricochet/elementary.h"
 #include "ritz.h"
 #include "numeric/gsl_quiet.h"
 
@@ -145,7 +146,7 @@ static ric_status fit_coordinate(fit *f, size_t coordinate, double w, double *c,
 static double size_of_residual(const double *F, size_t last, double period) {
   double size = fabs(F[last]), rate = two_pi / period;
   for (size_t i = 0; i < last; i++)
-    size = hypot(size, F[i] / rate / rate);
+    size = ric_hypot(size, F[i] / rate / rate);
   return size;
 }
 

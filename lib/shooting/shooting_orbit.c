@@ -5,6 +5,7 @@
 
 #include "numeric/vector.h"
 #include "orbit/admissibility.h"
+#include "ricochet/elementary.h"
 #include "shooting.h"
 
 /* A part of the period at which no harmonic of low order is zero. */
@@ -15,7 +16,7 @@ static void set_general_state(ric_shooting *s, const double *z, double period) {
   size_t n = s->arcs.coordinates;
   (void)shooting_begin(s, 0, z, period, OUTPUT_STATE);
   for (size_t i = 0; i < s->arcs.speeds; i++)
-    s->x[n + i] += cos((double)(i + 1));
+    s->x[n + i] += ric_cos((double)(i + 1));
 }
 
 static ric_status rates_at(ric_shooting *s, double t, double *rates, ric_error *error) {

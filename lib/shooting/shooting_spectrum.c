@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "floquet/multipliers.h"
+#include "ricochet/elementary.h"
 #include "shooting.h"
 #include "numeric/gsl_quiet.h"
 
@@ -317,9 +318,9 @@ static double determinant(const shooting_spectrum *k, size_t size) {
     if (r == 0)
       return 0;
     sign *= (r > 0 ? 1 : -1) * (k->tau[i] != 0 ? -1 : 1);
-    log_size += log(fabs(r));
+    log_size += ric_log(fabs(r));
   }
-  return sign * exp(fmax(-600, fmin(log_size, 600)));
+  return sign * ric_exp(fmax(-600, fmin(log_size, 600)));
 }
 
 static double determinant_of_block(const ric_shooting *s, size_t row, size_t column) {

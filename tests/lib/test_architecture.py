@@ -8,7 +8,7 @@ import re
 ROOMS = ["numeric", "model", "flow", "impact", "orbit", "floquet", "shooting", "continuation", "family", "grazing",
          "attractor"]
 PUBLIC = {  # public headers by room
-    "numeric": {"polynomial"},
+    "numeric": {"elementary", "polynomial"},
     "model": {"chain", "resonance", "obstacle", "lattice", "mck", "user_system", "system", "normal_modes"},
     "flow": {"segment", "flow"},
     "impact": {"event", "trajectory", "saltation"},

@@ -1,9 +1,14 @@
 """What the shared library exports, and which libraries it needs."""
 
+import re
 import subprocess
 
 import pytest
 
+# Functions of libm that every libm rounds the same way: their results are exact, or the nearest number. For all others
+# there is ricochet/elementary.h.
+EXACT = {"ceil", "copysign", "fabs", "floor", "fma", "fmax", "fmin", "fmod", "frexp", "ldexp", "llrint", "llround", "lround",
+         "modf", "nearbyint", "nextafter", "remainder", "rint", "round", "scalbln", "scalbn", "sqrt", "trunc"}  # fmt: skip
 UNWANTED = ("libgfortran", "libstdc++", "libmpi", "libhdf5", "libyaml", "libpython")
 
 
@@ -29,3 +34,14 @@ def test_only_libraries_that_a_c_library_has_a_use_for_are_needed(library, sanit
         pytest.skip("the sanitizers bring libraries of their own")
     text = output_of("ldd", library)
     assert "libfftw3" in text and not [line for line in text.splitlines() if line.strip().startswith(UNWANTED)], text
+
+
+def names_of(path, kind):
+    return {line.split()[-1].split("@")[0] for line in output_of("nm", "-D", f"--{kind}-only", path).splitlines()}
+
+
+@pytest.mark.parametrize("name", ["libricochet.so", "ricochet"])
+def test_what_libm_rounds_by_the_processor_is_not_called(build, name):
+    libm = re.search(r"libm\.so\.6 => (\S+)", output_of("ldd", build / "bin" / "libricochet.so")).group(1)
+    taken = names_of(build / "bin" / name, "undefined") & names_of(libm, "defined")
+    assert "sqrt" in names_of(libm, "defined") and taken <= EXACT, taken - EXACT

@@ -2,6 +2,7 @@
 #include "lattice_model.h"
 
 #include <math.h>
+#include <ricochet/elementary.h>
 #include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -55,8 +56,10 @@ static void read_force(lattice_model *m, const study_values *v) {
   int any = 0;
   for (size_t i = 0; i < m->lattice.particles; i++) {
     const double amplitude = value_of_particle(v, KEY_MODEL_FORCE, i);
-    m->force_cos[i] = amplitude * cos(phase);
-    m->force_sin[i] = -amplitude * sin(phase);
+    double sine, cosine;
+    ric_sincos(phase, &sine, &cosine);
+    m->force_cos[i] = amplitude * cosine;
+    m->force_sin[i] = -amplitude * sine;
     any = any || amplitude != 0;
   }
   m->lattice.frequency = value_number(v, KEY_MODEL_FREQUENCY, 0);

@@ -1,5 +1,6 @@
 /* Lookup of numbers by their names, and the sweeps over them. */
 #include <math.h>
+#include <ricochet/elementary.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -239,7 +240,7 @@ static double range_value(const range *g, size_t i) {
     return g->to;
   const double steps = (double)(g->points - 1);
   if (g->log)
-    return exp(log(g->from) + (double)i * (log(g->to) - log(g->from)) / steps);
+    return ric_exp(ric_log(g->from) + (double)i * (ric_log(g->to) - ric_log(g->from)) / steps);
   return g->from + (double)i * (g->to - g->from) / steps;
 }
 

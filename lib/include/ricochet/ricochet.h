@@ -25,6 +25,7 @@
 #include "chain.h"
 #include "continuation.h"
 #include "cycle_window.h"
+#include "elementary.h"
 #include "event.h"
 #include "explore.h"
 #include "family.h"

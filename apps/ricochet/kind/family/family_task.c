@@ -2,6 +2,7 @@
 
 #include <float.h>
 #include <math.h>
+#include <ricochet/elementary.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -21,7 +22,7 @@ static const double trace_first_part = 0.01, trace_most_part = 0.02, trace_least
 /* --- parameters --- */
 
 double branch_family_parameter(const branch_family *b, double value) {
-  return b->log ? log(value) : value;
+  return b->log ? ric_log(value) : value;
 }
 
 /* The values that the study names come back as the same bits, whatever rounding does to the curve's parameter: a bound
@@ -33,7 +34,7 @@ double branch_family_value(const branch_family *b, double parameter) {
     if (isfinite(at) && fabs(parameter - at) <= 4 * DBL_EPSILON * (1 + fabs(at)))
       return value;
   }
-  return b->log ? exp(parameter) : parameter;
+  return b->log ? ric_exp(parameter) : parameter;
 }
 
 /* Whether nothing is given but the energy; then the period is a guess. */

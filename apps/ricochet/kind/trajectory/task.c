@@ -30,7 +30,7 @@ static const double spacing = 1.05; /* ratio of the times of two records: equal 
 
 /* Memory of tangent vectors for all exponents of a state, and of the records of one task. */
 static double convergence_bytes(double exponents, bool by_cvodes) {
-  const double most_records = log(1e15) / log(spacing); /* durations over intervals */
+  const double most_records = ric_log(1e15) / ric_log(spacing); /* durations over intervals */
   return 8 * exponents * exponents * (by_cvodes ? CVODES_COPIES : COPIES) + STATE_BYTES * exponents +
          2 * 8 * (1 + exponents) * most_records; /* twice, as records grow by doubling */
 }
