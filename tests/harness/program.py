@@ -211,7 +211,7 @@ def sweep(points, low=0.0, high=0.187, parameter="model.gamma"):
 
 # --- checkpoints ---
 
-PART_HEADER, RECORD_HEADER = 160, 48  # bytes, as the program's checkpoint_files.h lays them out
+PART_HEADER, RECORD_HEADER = 168, 48  # bytes, as the program's checkpoint_files.h lays them out
 
 
 def records_of(part):

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 from program import (
     FILES,
+    PART_HEADER,
     STOPPED,
     USAGE,
     assert_same,
@@ -68,6 +69,27 @@ def test_sigusr1_stops_with_a_checkpoint_and_resume_computes_only_the_rest(ricoc
         run = run_attributes(own / "s.h5")
         assert run["tasks_resumed"] == done and run["tasks_computed"] == TASKS - done
         expect_uninterrupted_result(ricochet, own)
+
+
+def computed_elsewhere(part):
+    """Changes the digest of the arithmetic in the header of a checkpoint's file, and the header's own with it (FNV-1a)."""
+    data = bytearray(part.read_bytes())
+    data[88] ^= 1
+    digest = 0xCBF29CE484222325
+    for byte in data[: PART_HEADER - 8]:
+        digest = (digest ^ byte) * 0x100000001B3 % 2**64
+    data[PART_HEADER - 8 : PART_HEADER] = digest.to_bytes(8, "little")
+    part.write_bytes(data)
+
+
+def test_rows_of_another_processor_are_told(ricochet, folder):
+    stopped(ricochet, folder)
+    computed_elsewhere(next((folder / "s.h5.ckpt").glob("part-*")))
+    result = ricochet.run("s.yaml", "--resume", cwd=folder, ranks=2).expect_done()
+    result.expect_line("s.h5: ", "some rows", "last bits may differ")
+    assert run_attributes(folder / "s.h5")["arithmetic"] == b"mixed"
+    assert run_attributes(ricochet.result_of(SLOW))["arithmetic"] != b"mixed"
+    expect_uninterrupted_result(ricochet, folder)
 
 
 def test_max_time_stops_on_any_number_of_ranks(ricochet, folder):

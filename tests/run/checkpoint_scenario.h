@@ -8,7 +8,7 @@
 #include "run/checkpoint.h"
 
 /* Sizes in the file, of which tests compute places to damage. */
-enum { PART_HEADER_BYTES = 160, RECORD_HEADER_BYTES = 48 };
+enum { PART_HEADER_BYTES = 168, RECORD_HEADER_BYTES = 48 };
 
 static inline checkpoint_identity identity_of(uint64_t tasks, uint64_t row_bytes) {
   return (checkpoint_identity){.digest = 4711, .tasks = tasks, .row_bytes = row_bytes, .version = "0.1.0"};

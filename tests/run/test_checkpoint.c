@@ -56,6 +56,23 @@ static void missing_tasks_stay_numbered_until_the_next_scan(void **state) {
   checkpoint_close(&c);
 }
 
+static void rows_of_other_arithmetic_are_kept_and_known(void **state) {
+  checkpoint_identity identity = identity_of(100, 8);
+  identity.arithmetic = 1;
+  checkpoint *c = begin_checkpoint(*state, &identity, 0);
+  append(c, &identity, 0, 50);
+  checkpoint_close(&c);
+  c = open_checkpoint(*state, &identity);
+  assert_false(checkpoint_mixed(c));
+  checkpoint_close(&c);
+  identity.arithmetic = 2;
+  c = open_checkpoint(*state, &identity);
+  assert_true(checkpoint_mixed(c));
+  assert_int_equal(checkpoint_done(c), 50);
+  assert_rows(c, &identity, 0, 50);
+  checkpoint_close(&c);
+}
+
 static void finished_study_misses_nothing(void **state) {
   const checkpoint_identity identity = identity_of(10, 8);
   checkpoint *c = begin_checkpoint(*state, &identity, 0);
@@ -246,6 +263,7 @@ int main(void) {
       checkpoint_test(rows_come_back_as_they_were_appended),
       checkpoint_test(missing_tasks_are_numbered_across_the_gaps),
       checkpoint_test(missing_tasks_stay_numbered_until_the_next_scan),
+      checkpoint_test(rows_of_other_arithmetic_are_kept_and_known),
       checkpoint_test(finished_study_misses_nothing),
       checkpoint_test(reading_goes_across_records_and_files),
       checkpoint_test(records_may_be_larger_than_the_buffer),

@@ -7,6 +7,7 @@
 #include "../result/result.h"
 #include "../run/launcher.h"
 #include "../run/ranks.h"
+#include "arithmetic.h"
 #include "command.h"
 #include "run.h"
 
@@ -45,7 +46,10 @@ typedef struct run {
   char *command;
   double began;
   uint64_t resumed;
+  bool speaks;           /* whether this process prints */
   bool finished;         /* --resume found the result there */
+  uint64_t arithmetic;   /* digest of what processor and libraries compute */
+  bool mixed;            /* some rows were computed with another */
   uint64_t outcomes[64]; /* tasks by word of the outcome column */
 } run;
 
@@ -97,6 +101,7 @@ static int open_checkpoint(run *r, message *why) {
       .digest = study_digest(r->study), .tasks = study_tasks(r->study), .row_bytes = r->plan.rows.row_bytes};
   for (size_t k = 0; k < r->plan.tail_count; k++)
     identity.entry_bytes[k] = r->plan.tails[k].records.row_bytes;
+  identity.arithmetic = r->arithmetic = arithmetic_digest();
   snprintf(identity.version, sizeof identity.version, "%s %s", build_version(), build_git_sha());
   int code = ranks_agree(checkpoint_open(r->output.folder, &identity, &r->checkpoint, why), why);
   if (code)
@@ -105,6 +110,17 @@ static int open_checkpoint(run *r, message *why) {
   code = ranks_agree(ranks_rank() == 0 ? check_before_computing(r, why) : 0, why);
   ranks_share(&r->finished, sizeof r->finished);
   return code;
+}
+
+/* Says once that rows of different arithmetic stand side by side: rows of a run that is resumed, or of other ranks. */
+static void note_mixed(run *r) {
+  if (r->mixed || !checkpoint_mixed(r->checkpoint))
+    return;
+  r->mixed = true;
+  if (r->speaks)
+    fprintf(stderr,
+            "%s: some rows were computed where the processor or the libraries round otherwise; last bits may differ\n",
+            r->output.path);
 }
 
 static const char *stop_words(stop_reason reason) {
@@ -220,6 +236,8 @@ static int write_result(run *r, message *why) {
                           .compute_seconds = r->computed.seconds,
                           .total_seconds = ranks_max(clock_seconds() - r->began),
                           .ranks = ranks_count(),
+                          .arithmetic = r->arithmetic,
+                          .mixed = r->mixed,
                           .tasks_computed = r->computed.computed,
                           .tasks_resumed = r->resumed};
   const result_hooks hooks = {.poll = poll_writing, .commit = check_lock, .user = r};
@@ -275,6 +293,7 @@ static int assemble(run *r, message *why) {
   int code = ranks_agree(checkpoint_rescan(r->checkpoint, why), why);
   if (code)
     return code;
+  note_mixed(r);
   if (checkpoint_done(r->checkpoint) < study_tasks(r->study)) {
     return refuse(why, EXIT_STOPPED, "%s: stopped %s with %llu of %llu tasks done; --resume goes on", r->output.path,
                   stop_words(r->computed.stopped), (unsigned long long)checkpoint_done(r->checkpoint),
@@ -315,6 +334,7 @@ static bool is_useless(run *r) {
 }
 
 static int compute_and_write(run *r, message *why) {
+  note_mixed(r);
   int code = compute(r->study, r->kind, &r->plan, r->checkpoint, &r->options, &r->computed, why);
   return code ? code : assemble(r, why);
 }
@@ -361,8 +381,8 @@ static char *join_words(int argc, char **argv) {
 }
 
 /* Starts MPI if the launcher or --mpi asks for it, also if the options were refused with `code`: then one rank prints
- * the message. @param speaks  whether this process prints messages */
-static int start(run *r, int *argc, char ***argv, int code, bool *speaks, message *why) {
+ * the message. */
+static int start(run *r, int *argc, char ***argv, int code, message *why) {
   launcher_decision launched;
   message refused;
   r->began = clock_seconds();
@@ -372,7 +392,7 @@ static int start(run *r, int *argc, char ***argv, int code, bool *speaks, messag
     ranks_start(argc, argv);
     not_launched = launcher_check(ranks_count(), &refused);
   }
-  *speaks = ranks_rank() == 0 && !launched.silent;
+  r->speaks = ranks_rank() == 0 && !launched.silent;
   if (!code && not_launched)
     *why = refused;
   return code ? code : not_launched;
@@ -390,11 +410,10 @@ int command_run(int argc, char **argv) {
     run_options_clear(&r.options);
     return finish_output(0);
   }
-  bool speaks;
-  code = start(&r, &argc, &argv, code, &speaks, &why);
+  code = start(&r, &argc, &argv, code, &why);
   if (!code)
     code = run_study(&r, &why);
-  if (code && speaks)
+  if (code && r.speaks)
     complain(code, &why); /* before a rank exits with its code: mpirun then ends the others at once */
   ranks_finish();
   study_destroy(&r.study);
@@ -402,5 +421,5 @@ int command_run(int argc, char **argv) {
     free(r.extras[k].rows);
   free(r.command);
   run_options_clear(&r.options);
-  return code || !speaks ? code : finish_output(0);
+  return code || !r.speaks ? code : finish_output(0);
 }

@@ -49,6 +49,8 @@ typedef struct result_header {
   double compute_seconds; /* from the first chunk taken to the last finished, over all ranks, this run */
   double total_seconds;   /* from the start of the program to the start of the writing */
   int ranks;
+  uint64_t arithmetic; /* digest of what processor and libraries compute */
+  bool mixed;          /* whether some rows were computed with another */
   uint64_t tasks_computed, tasks_resumed;
 } result_header;
 

@@ -217,16 +217,20 @@ static int put_root(const file_place *at, hid_t file, const result_header *heade
 
 /* Everything that differs between two runs of one study is here, except the attributes file_time and command. */
 static int put_run(const file_place *at, hid_t file, const result_header *header) {
-  char host[256] = "unknown", started[32];
+  char host[256] = "unknown", started[32], arithmetic[17] = "mixed";
   hid_t group = H5I_INVALID_HID;
   if (gethostname(host, sizeof host - 1) != 0)
     strcpy(host, "unknown");
   utc_text(time(NULL) - (time_t)header->total_seconds, started, sizeof started);
+  if (!header->mixed)
+    snprintf(arithmetic, sizeof arithmetic, "%016llx", (unsigned long long)header->arithmetic);
   int code = open_group(at, file, "run", &group);
   if (!code)
     code = attribute_put_text(at, group, "host", host);
   if (!code)
     code = attribute_put_text(at, group, "started", started);
+  if (!code)
+    code = attribute_put_text(at, group, "arithmetic", arithmetic);
   if (!code)
     code = attribute_put_integer(at, group, "ranks", header->ranks);
   if (!code)

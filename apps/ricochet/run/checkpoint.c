@@ -52,6 +52,7 @@ static int set_identity(checkpoint *c, const char *folder, const checkpoint_iden
   c->identity.digest = identity->digest;
   c->identity.tasks = identity->tasks;
   c->identity.row_bytes = identity->row_bytes;
+  c->identity.arithmetic = identity->arithmetic;
   for (size_t i = 0; i < c->tails; i++)
     c->identity.entry_bytes[i] = identity->entry_bytes[i];
   /* Copied as a string: bytes after its end must not make a difference. */
@@ -100,6 +101,10 @@ void checkpoint_close(checkpoint **c) {
 
 int checkpoint_rescan(checkpoint *c, message *why) {
   return checkpoint_scan(c, false, why);
+}
+
+bool checkpoint_mixed(const checkpoint *c) {
+  return c->mixed;
 }
 
 uint64_t checkpoint_done(const checkpoint *c) {

@@ -13,6 +13,7 @@
 #ifndef RICOCHET_APP_CHECKPOINT_H
 #define RICOCHET_APP_CHECKPOINT_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -29,6 +30,7 @@ typedef struct checkpoint_identity {
   uint64_t tasks;
   uint64_t row_bytes;                          /* >= 1 */
   uint64_t entry_bytes[CHECKPOINT_MOST_TAILS]; /* of each ragged table; 0 after the last one */
+  uint64_t arithmetic;                         /* digest of what processor and libraries compute: may differ */
   char version[64];                            /* of the program: rows of different versions are not mixed */
 } checkpoint_identity;
 
@@ -50,6 +52,9 @@ void checkpoint_close(checkpoint **c);
  *  missing tasks anew. Only their headers are verified here: checkpoint_read verifies the rows, and each rank reads
  * only its share of them. */
 int checkpoint_rescan(checkpoint *c, message *why);
+
+/** Whether some files were written where the arithmetic differs, as of the last scan. */
+bool checkpoint_mixed(const checkpoint *c);
 
 /** Number of distinct tasks found in records, as of the last scan. */
 uint64_t checkpoint_done(const checkpoint *c);

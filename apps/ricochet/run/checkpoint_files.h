@@ -54,7 +54,7 @@ const index_gap *index_find_gap(const checkpoint_index *index, uint64_t n);
 
 #define PART_MAGIC   UINT64_C(0x74706b6368636972) /* "ricchkpt" */
 #define RECORD_MAGIC UINT64_C(0x64726f6365726372) /* "rcrecord" */
-enum { PART_FORMAT = 3, PART_BUFFER_BYTES = 1 << 20, PART_NAME_BYTES = 40 };
+enum { PART_FORMAT = 4, PART_BUFFER_BYTES = 1 << 20, PART_NAME_BYTES = 40 };
 
 typedef struct part_header {
   uint64_t magic, format;
@@ -69,7 +69,7 @@ typedef struct record_header {
 } record_header;
 
 /* Written byte by byte: there must be no padding. */
-_Static_assert(sizeof(checkpoint_identity) == 136 && sizeof(part_header) == 160, "part header has padding");
+_Static_assert(sizeof(checkpoint_identity) == 144 && sizeof(part_header) == 168, "part header has padding");
 _Static_assert(sizeof(record_header) == 48, "record header has padding");
 
 /** A file found in the folder. */
@@ -85,6 +85,7 @@ struct checkpoint {
   unsigned generation; /* of the file that checkpoint_begin creates: one above all that were found */
   part *parts;         /* [part_count], by generation and rank; files found later come after those found earlier */
   size_t part_count;
+  bool mixed; /* some part was written with other arithmetic */
   checkpoint_index index;
   size_t tails;
   uint64_t *before; /* [ranges + 1][tails] entries in the ranges before; NULL until they are counted */

@@ -119,6 +119,7 @@ static int scan_part_header(checkpoint *c, size_t number, message *why) {
                   (unsigned long long)header.format, PART_FORMAT);
   header.identity.version[sizeof header.identity.version - 1] = '\0';
   c->parts[number].scanned = sizeof header;
+  c->mixed = c->mixed || header.identity.arithmetic != c->identity.arithmetic;
   return compare_identity(path, &header.identity, &c->identity, why);
 }
 
