@@ -7,6 +7,7 @@
 
 #include "attractor.h"
 #include "map_simd.h"
+#include "numeric/constants.h"
 #include "numeric/linear.h"
 #include "numeric/number_block.h"
 #include "ricochet/elementary.h"
@@ -329,7 +330,7 @@ static ric_status run_transient(ric_map_runner *r, size_t until, ric_error *erro
 /* Logarithm of the length of a tangent vector. */
 static double length_of(const map_block *b, size_t vector, size_t lane) {
   size_t at = vector * b->width + lane;
-  return ric_log(b->norm[at]) / 2 + (double)b->power[at] * ric_log(2);
+  return ric_log(b->norm[at]) / 2 + (double)b->power[at] * ln_2;
 }
 
 static void begin_measuring(ric_map_runner *r) {

@@ -55,14 +55,14 @@ static double distance_from_one(ric_complex z) {
   return ric_hypot(z.re - 1, z.im);
 }
 
-/* By modulus, largest first, then by argument, positive first. */
+/* By modulus, largest first, then by the size of the argument, positive first. */
 static int in_order(const void *a, const void *b) {
   const ric_complex *x = a, *y = b;
-  double rx = modulus(*x), ry = modulus(*y), ax = fabs(ric_atan2(x->im, x->re)), ay = fabs(ric_atan2(y->im, y->re));
+  double rx = modulus(*x), ry = modulus(*y);
   if (rx != ry)
     return rx > ry ? -1 : 1;
-  if (ax != ay)
-    return ax < ay ? -1 : 1;
+  if (x->re != y->re)
+    return x->re > y->re ? -1 : 1;
   return (x->im < y->im) - (x->im > y->im);
 }
 

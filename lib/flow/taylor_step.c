@@ -122,11 +122,11 @@ taylor_decay taylor_decay_join(taylor_decay a, taylor_decay b) {
 
 /* The change of the state grows at least linearly with the length, hence one power less. */
 double taylor_step_factor(const taylor_decay *d, int order, double tolerance) {
-  double allowed = measured_share * tolerance * d->change, factor = most_growth;
+  double allowed = measured_share * tolerance * d->change, growth = INFINITY; /* logarithm of the factor */
   for (int k = 0; k < 2; k++)
     if (d->tail[k] > 0)
-      factor = fmin(factor, ric_pow(allowed / d->tail[k], 1.0 / (order - 2 + k)));
-  return fmin(factor, inside * d->nearest_zero);
+      growth = fmin(growth, ric_log(allowed / d->tail[k]) / (order - 2 + k));
+  return fmin(fmin(most_growth, ric_exp(growth)), inside * d->nearest_zero);
 }
 
 double taylor_step_length(double remaining, double longest, bool fixed) {

@@ -4,5 +4,6 @@
 
 static const double pi = 3.14159265358979323846;
 static const double two_pi = 6.28318530717958647692;
+static const double ln_2 = 0.69314718055994530942;
 
 #endif

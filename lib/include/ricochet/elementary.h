@@ -3,7 +3,7 @@
  * libm chooses its variants by the processor: with fused multiply-add, sin, cos, exp, log, pow and others round a last
  * bit otherwise, and one last bit changes the steps of a branch. These functions are SLEEF's, whose `cinz` variants
  * never fuse: what they give depends on the argument and on SLEEF's version alone. Off by at most 1 unit in the last
- * place (hypot: 0.5). The library takes all its elementary functions from here; callbacks whose results must not depend
+ * place (hypot: 1.5). The library takes all its elementary functions from here; callbacks whose results must not depend
  * on the processor do the same. sqrt, fabs, fma, fmod, floor and ldexp are exactly rounded in any libm.
  *
  * Special values as in C's Annex F. No function sets errno. */
