@@ -179,7 +179,7 @@ def test_asked_to_stop_while_it_writes_the_result_a_run_stops_soon(ricochet, fol
         wait_until(lambda: writing_since(folder) > before, "the beginning of the result")
         run.send_signal(signal.SIGUSR1)
         stopped = ricochet.end(run, limit=10)
-        assert "while it was written, with all tasks done; --resume writes it" in stopped.expect(program.STOPPED).err
+        assert "before it was written, with all tasks done; --resume writes it" in stopped.expect(program.STOPPED).err
         assert names(folder) == ["s.h5.ckpt", "s.yaml"] and tasks_in(folder / "s.h5.ckpt") == 10000
     ricochet.run("s.yaml", "--resume", cwd=folder).expect_done()
     assert run_attributes(folder / "s.h5")["tasks_computed"] == 0
