@@ -9,7 +9,7 @@ import pytest
 
 TESTS = Path(__file__).resolve().parent
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # tests run side by side already; before numpy is loaded
-sys.path[:0] = [str(TESTS / "harness"), str(TESTS / "cli")]
+sys.path[:0] = [str(TESTS / "harness"), str(TESTS / "cli"), str(TESTS / "faults")]
 
 from program import Program  # noqa: E402  # behind the path to it
 

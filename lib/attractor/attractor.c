@@ -168,6 +168,16 @@ size_t period_lowest(const double *states, size_t stride, size_t count, size_t o
   return lowest;
 }
 
+ric_status fill_unknown(double *numbers, size_t count, ric_poll poll, ric_error *error) {
+  enum { STEP = 1 << 20 };
+  for (size_t i = 0; numbers && i < count; i++) {
+    if (i % STEP == 0 && ric_poll_stops(poll))
+      return ric_fail(error, RIC_ESTOPPED, "stopped by the poll callback");
+    numbers[i] = NAN;
+  }
+  return RIC_OK;
+}
+
 /* --- two attractors ----------------------------------------------------------------------------------------------- */
 
 static int compare_values(const void *a, const void *b) {

@@ -4,6 +4,8 @@
 
 #include <stddef.h>
 
+#include "ricochet/status.h"
+
 /** The smallest period up to `limit` of consecutive states, 0 when there is none (the definition is in
  *  ricochet/attractor.h).
  *  @param states  [2 limit + 1][stride], of which the first `size` numbers count
@@ -13,5 +15,9 @@ size_t period_find(const double *states, size_t size, size_t stride, size_t limi
 
 /** Index of the first state whose number `observe` is smallest. @param states  [count][stride] */
 size_t period_lowest(const double *states, size_t stride, size_t count, size_t observe);
+
+/** Sets numbers to NaN, which may be gigabytes: asks the poll meanwhile. NULL is none.
+ *  @returns RIC_OK or RIC_ESTOPPED */
+ric_status fill_unknown(double *numbers, size_t count, ric_poll poll, ric_error *error);
 
 #endif

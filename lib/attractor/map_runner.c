@@ -39,6 +39,7 @@ struct ric_map_runner {
   double *directions;     /* [exponents][size] initial tangent vectors */
   size_t *cycle;          /* [width] length of the cycle */
   bool *diverged;         /* [width] diverged */
+  size_t *sound;          /* [width] the last iterate known before a map diverged */
   /* of the present block: */
   ric_attractor *attractors;
   size_t count, left;   /* maps; those that have not diverged */
@@ -70,7 +71,8 @@ static ric_status allocate_runner(ric_map_runner *r, size_t size, ric_error *err
   double *store = r->numbers = aligned_alloc(64, (numbers * sizeof *store / 64 + 1) * 64);
   r->diverged = calloc(width, sizeof *r->diverged);
   r->cycle = calloc(width, sizeof *r->cycle);
-  if (!store || !r->diverged || !r->cycle)
+  r->sound = calloc(width, sizeof *r->sound);
+  if (!store || !r->diverged || !r->cycle || !r->sound)
     return ric_fail(error, RIC_ENOMEM, "no memory for %zu iterates of %zu maps of size %zu", longest, width, size);
   r->trace = number_store_take(&store, (longest + 1) * state);
   r->checked_states = number_store_take(&store, state);
@@ -135,6 +137,7 @@ void ric_map_runner_destroy(ric_map_runner **runner) {
   free((*runner)->numbers);
   free((*runner)->diverged);
   free((*runner)->cycle);
+  free((*runner)->sound);
   free(*runner);
   *runner = NULL;
 }
@@ -166,15 +169,18 @@ static void store(const ric_map_runner *r, const double *first, size_t count) {
   }
 }
 
-/* Marks the values stored from iterate `first` + 1 on as unknown. */
-static void erase(const ric_map_runner *r, ric_attractor *a, size_t first) {
-  size_t size = r->block.size, transient = r->options.transient;
-  for (size_t k = first > transient ? first - transient : 0; k < r->options.keep; k++) {
-    if (a->values)
-      a->values[k] = NAN;
-    for (size_t i = 0; i < size && a->states; i++)
-      a->states[k * size + i] = NAN;
-  }
+/* Marks what is stored of a map that has diverged as unknown from there on. @returns RIC_ESTOPPED */
+static ric_status erase(const ric_map_runner *r, size_t lane, ric_error *error) {
+  const ric_attractor_options *o = &r->options;
+  const ric_attractor *a = &r->attractors[lane];
+  const size_t known = r->sound[lane] > o->transient ? r->sound[lane] - o->transient : 0;
+  if (known >= o->keep)
+    return RIC_OK;
+  if (a->values)
+    RIC_TRY(fill_unknown(a->values + known, o->keep - known, o->poll, error));
+  if (a->states)
+    RIC_TRY(fill_unknown(a->states + known * r->block.size, (o->keep - known) * r->block.size, o->poll, error));
+  return RIC_OK;
 }
 
 /* A map has diverged: its lane gets a state that stays zero. */
@@ -189,7 +195,7 @@ static void set_diverged(ric_map_runner *r, double *state, size_t lane) {
   r->left--;
   ric_attractor *a = &r->attractors[lane];
   copy_lane(r, r->checked_states, lane, a->z);
-  erase(r, a, r->checked);
+  r->sound[lane] = r->checked;
   for (size_t k = 0; k < r->options.exponents && a->exponents; k++)
     a->exponents[k] = NAN;
   for (size_t i = 0; i < size && a->lowest; i++)
@@ -406,6 +412,8 @@ static ric_status run_block(ric_map_runner *r, ric_error *error) {
   for (size_t l = 0; l < r->count; l++)
     if (!r->diverged[l])
       set_results(r, l);
+    else
+      RIC_TRY(erase(r, l, error));
   return RIC_OK;
 }
 
@@ -438,8 +446,17 @@ ric_status ric_map_runner_run(ric_map_runner *r, size_t count, const ric_grazing
 
 /* --- the fastest variant ------------------------------------------------------------------------------------------ */
 
-/* A trial: numbers of values, of iterates of each, and of runs, the shortest of which counts. */
+/* A trial: numbers of values, of iterates of each, and of runs, the shortest of which counts. A map whose products in a
+ * trial are more is iterated less often, or not at all: the trial must take no time that matters. */
 enum { TRIAL_VALUES = 64, TRIAL_ITERATES = 400, TRIAL_RUNS = 3 };
+static const double trial_products = 2e7;
+
+/* @returns 0 for a map that is too large */
+static size_t trial_iterates(size_t size, size_t exponents) {
+  const double products = (double)TRIAL_VALUES * (double)size * (double)size * (1 + (double)exponents);
+  const double fit = fmin(TRIAL_ITERATES, trial_products / products);
+  return fit >= 2 ? (size_t)fit : 0;
+}
 
 typedef struct trial {
   ric_grazing_map map;
@@ -496,9 +513,9 @@ ric_map_lanes ric_map_lanes_fastest(size_t size, size_t exponents, double (*now)
   trial t = {.options = ric_attractor_options_default(), .now = now, .user = user};
   ric_map_lanes fastest = RIC_MAP_LANES_ONE;
   double best = INFINITY;
-  if (!now)
+  if (!now || trial_iterates(size, exponents) == 0)
     return ric_map_lanes_widest();
-  t.options.transient = t.options.measure = TRIAL_ITERATES / 2;
+  t.options.transient = t.options.measure = trial_iterates(size, exponents) / 2;
   t.options.keep = 0;
   t.options.exponents = exponents;
   t.options.period_limit = 1;

@@ -479,7 +479,8 @@ static ric_status reserve_states(ric_motion_section *s, size_t width, size_t lim
   return RIC_OK;
 }
 
-static void clear_results(const ric_attractor_options *o, size_t size, ric_attractor *a) {
+static ric_status clear_results(const ric_attractor_options *o, size_t size, ric_poll poll, ric_attractor *a,
+                                ric_error *error) {
   a->period = a->iterates = 0;
   a->impacts = NAN;
   a->reason[0] = '\0';
@@ -487,10 +488,8 @@ static void clear_results(const ric_attractor_options *o, size_t size, ric_attra
     a->exponents[k] = NAN;
   for (size_t i = 0; a->lowest && i < size; i++)
     a->lowest[i] = NAN;
-  for (size_t k = 0; a->values && k < o->keep; k++)
-    a->values[k] = NAN;
-  for (size_t k = 0; a->states && k < o->keep * size; k++)
-    a->states[k] = NAN;
+  RIC_TRY(fill_unknown(a->values, o->keep, poll, error));
+  return fill_unknown(a->states, o->keep * size, poll, error);
 }
 
 ric_status ric_motion_section_run(ric_motion_section *section, const ric_attractor_options *options,
@@ -507,6 +506,6 @@ ric_status ric_motion_section_run(ric_motion_section *section, const ric_attract
   c->course = NULL;
   c->trajectory->options.poll = o.poll.call ? o.poll : c->options.trajectory.poll;
   RIC_TRY(crossings_start(c, attractor->z, error));
-  clear_results(&o, c->size, attractor);
+  RIC_TRY(clear_results(&o, c->size, c->trajectory->options.poll, attractor, error));
   return run_all(&j, error);
 }

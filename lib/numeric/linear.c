@@ -6,7 +6,9 @@
 #include <stdint.h>
 
 #include <gsl/gsl_blas.h>
+#include <gsl/gsl_eigen.h>
 #include <gsl/gsl_linalg.h>
+#include <gsl/gsl_sort_vector.h>
 
 #include "ricochet/elementary.h"
 
@@ -77,6 +79,67 @@ static ric_status fail(ric_error *error, size_t size, int code) {
                   gsl_strerror(code));
 }
 
+/* Whether a long loop is to stop, asked for each of `size` columns. */
+static bool column_stops(size_t size, ric_poll poll) {
+  enum { SMALL = 100 };
+  return size > SMALL && ric_poll_stops(poll);
+}
+
+static ric_status refuse_stopped(ric_error *error, size_t size) {
+  return ric_fail(error, RIC_ESTOPPED, "stopped by the poll callback in a linear system of size %zu", size);
+}
+
+static void swap_columns(gsl_matrix *a, gsl_permutation *p, gsl_vector *norms, size_t i, size_t j) {
+  gsl_matrix_swap_columns(a, i, j);
+  gsl_permutation_swap(p, i, j);
+  gsl_vector_swap_elements(norms, i, j);
+}
+
+/* The norms of the columns behind column i without row i, and of those which that cancels anew. */
+static void reduce_norms(gsl_matrix *a, gsl_vector *norms, size_t i) {
+  for (size_t j = i + 1; j < a->size2; j++) {
+    const double x = gsl_vector_get(norms, j), share = x > 0 ? gsl_matrix_get(a, i, j) / x : 0;
+    double y = fabs(share) >= 1 ? 0 : x * sqrt(1 - share * share);
+    if (!(x > 0))
+      continue;
+    if (fabs(y / x) < sqrt(20.0) * GSL_SQRT_DBL_EPSILON) {
+      gsl_vector_view rest = gsl_matrix_subcolumn(a, j, i + 1, a->size1 - (i + 1));
+      y = gsl_blas_dnrm2(&rest.vector);
+    }
+    gsl_vector_set(norms, j, y);
+  }
+}
+
+/* gsl_linalg_QRPT_decomp of a square matrix, bit for bit, but it can be stopped: with thousands of columns it takes
+ * minutes. @returns false if it was */
+static bool decompose(gsl_matrix *a, gsl_vector *tau, gsl_permutation *p, gsl_vector *norms, ric_poll poll) {
+  const size_t n = a->size1;
+  gsl_permutation_init(p);
+  for (size_t i = 0; i < n; i++) {
+    gsl_vector_view column = gsl_matrix_column(a, i);
+    gsl_vector_set(norms, i, gsl_blas_dnrm2(&column.vector));
+  }
+  for (size_t i = 0; i < n; i++) {
+    size_t largest = i;
+    for (size_t j = i + 1; j < n; j++)
+      if (gsl_vector_get(norms, j) > gsl_vector_get(norms, largest))
+        largest = j;
+    if (largest != i)
+      swap_columns(a, p, norms, i, largest);
+    gsl_vector_view column = gsl_matrix_subcolumn(a, i, i, n - i);
+    const double factor = gsl_linalg_householder_transform(&column.vector);
+    gsl_vector_set(tau, i, factor);
+    if (i + 1 == n)
+      break;
+    gsl_matrix_view rest = gsl_matrix_submatrix(a, i, i + 1, n - i, n - (i + 1));
+    gsl_linalg_householder_hm(factor, &column.vector, &rest.matrix);
+    reduce_norms(a, norms, i);
+    if (column_stops(n, poll))
+      return false;
+  }
+  return true;
+}
+
 ric_status linear_solve(double *matrix, size_t size, double *rhs, double *x, const linear_work *w,
                         linear_factor *factor, ric_error *error) {
   gsl_matrix_view a = gsl_matrix_view_array(matrix, size, size);
@@ -84,8 +147,10 @@ ric_status linear_solve(double *matrix, size_t size, double *rhs, double *x, con
   gsl_vector_view solution = gsl_vector_view_array(x, size), b = gsl_vector_view_array(rhs, size);
   gsl_vector_view work = gsl_vector_view_array(w->work, 3 * size);
   gsl_permutation p = {.size = size, .data = w->permutation};
-  int sign, code = gsl_linalg_QRPT_decomp(&a.matrix, &tau.vector, &p, &sign, &scratch.vector);
+  int code = 0;
   double rcond = 0;
+  if (!decompose(&a.matrix, &tau.vector, &p, &scratch.vector, w->poll))
+    return refuse_stopped(error, size);
   factor->norm = upper_norm1(matrix, size);
   factor->last = fabs(matrix[size * size - 1]);
   if (!code && factor->last > 0)
@@ -113,6 +178,52 @@ ric_status linear_least_norm(double *matrix, size_t size, double *rhs, double *x
   gsl_vector_free(tau_z);
   gsl_vector_free(work);
   gsl_permutation_free(p);
+  return code ? fail(error, size, code) : RIC_OK;
+}
+
+/* One step of the reduction to a tridiagonal matrix: column i below the diagonal becomes a multiple of a unit vector.
+ * @param x  [size - i - 1] scratch */
+static void reduce_column(gsl_matrix *a, size_t i, gsl_vector *x) {
+  const size_t left = a->size1 - i - 1;
+  gsl_vector_view column = gsl_matrix_subcolumn(a, i, i + 1, left);
+  gsl_matrix_view rest = gsl_matrix_submatrix(a, i + 1, i + 1, left, left);
+  const double factor = gsl_linalg_householder_transform(&column.vector), first = gsl_vector_get(&column.vector, 0);
+  if (factor != 0) {
+    double product;
+    gsl_vector_set(&column.vector, 0, 1);
+    gsl_blas_dsymv(CblasLower, factor, &rest.matrix, &column.vector, 0, x);
+    gsl_blas_ddot(x, &column.vector, &product);
+    gsl_blas_daxpy(-0.5 * factor * product, &column.vector, x);
+    gsl_blas_dsyr2(CblasLower, -1, &column.vector, x, &rest.matrix);
+  }
+  gsl_vector_set_zero(&column.vector);
+  gsl_vector_set(&column.vector, 0, first);
+}
+
+/* gsl_linalg_symmtd_decomp, bit for bit, of the lower triangle, but it can be stopped. GSL takes no time for the
+ * eigenvalues of what is left. @returns false if it was stopped */
+static bool make_tridiagonal(gsl_matrix *a, gsl_vector *scratch, ric_poll poll) {
+  for (size_t i = 0; i + 2 < a->size1; i++) {
+    gsl_vector_view x = gsl_vector_subvector(scratch, 0, a->size1 - i - 1);
+    reduce_column(a, i, &x.vector);
+    if (column_stops(a->size1, poll))
+      return false;
+  }
+  return true;
+}
+
+ric_status linear_eigenvalues(double *matrix, size_t size, double *eigenvalues, ric_poll poll, ric_error *error) {
+  gsl_eigen_symm_workspace *w = gsl_eigen_symm_alloc(size);
+  gsl_matrix_view a = gsl_matrix_view_array(matrix, size, size);
+  gsl_vector_view e = gsl_vector_view_array(eigenvalues, size);
+  int code = w ? GSL_SUCCESS : GSL_ENOMEM;
+  const bool done = code || make_tridiagonal(&a.matrix, &e.vector, poll);
+  if (!code && done)
+    code = gsl_eigen_symm(&a.matrix, &e.vector, w);
+  gsl_eigen_symm_free(w);
+  if (!done)
+    return refuse_stopped(error, size);
+  gsl_sort_vector(&e.vector);
   return code ? fail(error, size, code) : RIC_OK;
 }
 

@@ -49,6 +49,7 @@ typedef struct linear_work {
   double *tau, *norm; /* [size] */
   double *work;       /* [3 size] */
   size_t *permutation;
+  ric_poll poll; /* asked for each column of a matrix for which that is worth while */
 } linear_work;
 
 /** Estimates from the triangular factor. */
@@ -57,8 +58,14 @@ typedef struct linear_factor {
   double last;               /* its last and smallest diagonal entry */
 } linear_factor;
 
+/** Eigenvalues of a symmetric matrix [size][size], of which the lower triangle is read; it is overwritten.
+ *  @param eigenvalues  [size] rising
+ *  @returns also RIC_ESTOPPED */
+ric_status linear_eigenvalues(double *matrix, size_t size, double *eigenvalues, ric_poll poll, ric_error *error);
+
 /** Solves matrix x = rhs; the matrix [size][size] is overwritten.
- *  @param factor  set from the triangular factor; with an infinite inverse_norm x is unchanged */
+ *  @param factor  set from the triangular factor; with an infinite inverse_norm x is unchanged
+ *  @returns also RIC_ESTOPPED */
 ric_status linear_solve(double *matrix, size_t size, double *rhs, double *x, const linear_work *w,
                         linear_factor *factor, ric_error *error);
 

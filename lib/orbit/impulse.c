@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include <gsl/gsl_eigen.h>
-#include <gsl/gsl_sort_vector.h>
 
 #include "model/image_ring.h"
 #include "numeric/constants.h"
@@ -322,7 +321,8 @@ static ric_status contact_solve(contact_system *c, const unit_cell *cell, const 
   list_border(c, cell, r, options->resonance_tol);
   RIC_TRY(combine_modes(c, cell, error));
   assemble(c, cell, r);
-  linear_work work = {.tau = c->tau, .norm = c->norm, .work = c->work, .permutation = c->permutation};
+  linear_work work = {
+      .tau = c->tau, .norm = c->norm, .work = c->work, .permutation = c->permutation, .poll = options->poll};
   RIC_TRY(linear_solve(c->matrix, m + c->column_count, c->rhs, c->solution, &work, &factor, error));
   c->outcome = (linear_outcome){.condition = r->scale * factor.inverse_norm};
   c->outcome.singular = !(c->outcome.condition < options->singular_condition);
@@ -340,22 +340,12 @@ static ric_status contact_solve(contact_system *c, const unit_cell *cell, const 
 
 /** Smallest-to-largest eigenvalues [m] of the contact matrix, with all modes in the response. */
 static ric_status contact_eigenvalues(contact_system *c, const unit_cell *cell, const response *r, double *eigenvalues,
-                                      ric_error *error) {
+                                      ric_poll poll, ric_error *error) {
   size_t m = cell->impacts;
   RIC_TRY(reserve(c, m, error));
   c->border_count = c->column_count = 0;
   assemble(c, cell, r);
-  gsl_eigen_symm_workspace *w = gsl_eigen_symm_alloc(m);
-  if (!w)
-    return ric_fail(error, RIC_ENOMEM, "no memory for the eigenvalues of %zu impacts", m);
-  gsl_matrix_view a = gsl_matrix_view_array(c->matrix, m, m);
-  gsl_vector_view e = gsl_vector_view_array(eigenvalues, m);
-  int code = gsl_eigen_symm(&a.matrix, &e.vector, w);
-  gsl_eigen_symm_free(w);
-  if (code)
-    return ric_fail(error, RIC_ENUMERIC, "eigenvalues of the contact matrix: %s", gsl_strerror(code));
-  gsl_sort_vector(&e.vector);
-  return RIC_OK;
+  return linear_eigenvalues(c->matrix, m, eigenvalues, poll, error);
 }
 
 void impulse_clear(impulse *w) {
@@ -428,29 +418,47 @@ static void write_state(const impulse *w, const unit_cell *cell, const boundary_
       state->v_half[cell->contacts[k].site] = -w->p[k] / 2;
 }
 
+/* Asked between the transforms of the whole cell. */
+static ric_status ask(const ric_orbit_options *options, ric_error *error) {
+  return ric_poll_stops(options->poll) ? ric_fail(error, RIC_ESTOPPED, "stopped in the contact equations") : RIC_OK;
+}
+
+/* From the impulses to the state. */
+static ric_status find_state(const impulse *w, const unit_cell *cell, const ric_orbit_options *options,
+                             const boundary_state *state, ric_error *error) {
+  const response *r = &w->response;
+  transform_impulses(w, cell, RIC_ROLE_START, r->modal_start);
+  RIC_TRY(ask(options, error));
+  transform_impulses(w, cell, RIC_ROLE_HALF, r->modal_half);
+  RIC_TRY(ask(options, error));
+  compute_positions(w, cell);
+  lattice_transform_inverse(r->transform, r->modal_start);
+  RIC_TRY(ask(options, error));
+  lattice_transform_inverse(r->transform, r->modal_half);
+  write_state(w, cell, state);
+  return ask(options, error);
+}
+
 ric_status impulse_solve(impulse *w, const unit_cell *cell, double period, const ric_orbit_options *options,
                          const boundary_state *state, linear_outcome *solution, ric_error *error) {
   RIC_TRY(prepare(w, cell, error));
   response *r = &w->response;
+  RIC_TRY(ask(options, error));
   response_compute(r, &cell->chain, period, 1);
+  RIC_TRY(ask(options, error));
   response_kernels(r, has_both_roles(cell));
+  RIC_TRY(ask(options, error));
   RIC_TRY(contact_solve(&w->contacts, cell, r, options, w->p, error));
   *solution = w->contacts.outcome;
   if (solution->singular && !solution->solvable)
     return RIC_OK;
-  transform_impulses(w, cell, RIC_ROLE_START, r->modal_start);
-  transform_impulses(w, cell, RIC_ROLE_HALF, r->modal_half);
-  compute_positions(w, cell);
-  lattice_transform_inverse(r->transform, r->modal_start);
-  lattice_transform_inverse(r->transform, r->modal_half);
-  write_state(w, cell, state);
-  return RIC_OK;
+  return find_state(w, cell, options, state, error);
 }
 
-ric_status impulse_eigenvalues(impulse *w, const unit_cell *cell, double period, double *eigenvalues,
+ric_status impulse_eigenvalues(impulse *w, const unit_cell *cell, double period, double *eigenvalues, ric_poll poll,
                                ric_error *error) {
   RIC_TRY(prepare(w, cell, error));
   response_compute(&w->response, &cell->chain, period, 0);
   response_kernels(&w->response, has_both_roles(cell));
-  return contact_eigenvalues(&w->contacts, cell, &w->response, eigenvalues, error);
+  return contact_eigenvalues(&w->contacts, cell, &w->response, eigenvalues, poll, error);
 }

@@ -109,6 +109,7 @@ ric_status impulse_solve(impulse *w, const unit_cell *cell, double period, const
                          const boundary_state *state, linear_outcome *solution, ric_error *error);
 
 /** Smallest-to-largest eigenvalues of the cell's contact matrix, [impacts]. */
-ric_status impulse_eigenvalues(impulse *w, const unit_cell *cell, double period, double *eigenvalues, ric_error *error);
+ric_status impulse_eigenvalues(impulse *w, const unit_cell *cell, double period, double *eigenvalues, ric_poll poll,
+                               ric_error *error);
 
 #endif

@@ -33,7 +33,7 @@ static ric_status evaluate_eigenvalues(family *f, double parameter) {
   if (f->along == RIC_ALONG_GAMMA)
     cell->chain.gamma = parameter;
   return impulse_eigenvalues(&f->solver->impulse, cell, f->along == RIC_ALONG_GAMMA ? f->period : parameter,
-                             f->eigenvalues, f->error);
+                             f->eigenvalues, f->solver->options.poll, f->error);
 }
 
 static double eigenvalue_at(double parameter, void *user) {

@@ -178,8 +178,11 @@ static void impose_boundary_conditions(dense_equations *d, const ric_chain *chai
 
 static ric_status solve_matrix(dense_equations *d, const ric_chain *chain, const ric_pattern *pattern,
                                const ric_orbit_options *options, linear_outcome *solution, ric_error *error) {
-  linear_work work = {
-      .tau = d->tau->data, .norm = d->norm->data, .work = d->work->data, .permutation = d->permutation->data};
+  linear_work work = {.tau = d->tau->data,
+                      .norm = d->norm->data,
+                      .work = d->work->data,
+                      .permutation = d->permutation->data,
+                      .poll = options->poll};
   linear_factor factor;
   double residual;
   size_t size = 2 * d->n;

@@ -203,7 +203,15 @@ static void the_variant_whose_trial_is_shortest_is_taken(void **state) {
     assert_true(clock.asked > 0);
   }
   assert_int_equal(ric_map_lanes_fastest(3, 0, NULL, NULL), ric_map_lanes_widest());
-  assert_int_equal(ric_map_lanes_fastest(SIZE_MAX / 1000, 0, fake_now, NULL), RIC_MAP_LANES_ONE);
+}
+
+/* With which one trial would take minutes. */
+static void large_maps_are_not_tried(void **state) {
+  (void)state;
+  fake_clock clock = {0};
+  assert_int_equal(ric_map_lanes_fastest(600, 600, fake_now, &clock), ric_map_lanes_widest());
+  assert_int_equal(ric_map_lanes_fastest(SIZE_MAX / 1000, 0, fake_now, &clock), ric_map_lanes_widest());
+  assert_int_equal(clock.asked, 0);
 }
 
 int main(void) {
@@ -216,6 +224,7 @@ int main(void) {
       cmocka_unit_test(the_distance_is_that_of_the_farthest_pair),
       cmocka_unit_test(equal_sets_have_no_distance_and_numbers_that_are_not_finite_none_known),
       cmocka_unit_test(the_variant_whose_trial_is_shortest_is_taken),
+      cmocka_unit_test(large_maps_are_not_tried),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

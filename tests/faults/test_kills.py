@@ -2,9 +2,9 @@
 
 import os
 import signal
-from pathlib import Path
 
 import program
+from phases import ANY_COMMAND, finished_tasks, is_locked
 from program import assert_same, names, ranks_of, records, run_attributes, study, sweep, tasks_in
 from program import wait_until, write
 
@@ -12,7 +12,6 @@ TASKS = 300
 SLOW = study(particles=60000, at_start="[7]", orbit="states: false", sweep=sweep(TASKS))  # some 6 ms a task
 ENDLESS = SLOW.replace(f"points: {TASKS}", "points: 1000000")
 LARGE = study(particles=1000, at_start="[7]", sweep=sweep(10000))  # its result takes a while to write: 170 MB
-ANY_COMMAND = ("heap_checksums",)  # holds addresses, which move with the length of the command line
 
 
 def expect_uninterrupted_result(ricochet, folder):
@@ -26,10 +25,6 @@ def start_and_wait_for(ricochet, folder, more, ranks, *words):
     run = ricochet.start_run("s.yaml", *words, cwd=folder, ranks=ranks)
     wait_until(lambda: tasks_in(folder / "s.h5.ckpt") >= before + more, "records")
     return run
-
-
-def finished_tasks(folder):
-    return [task for first, count in records(folder / "s.h5.ckpt") for task in range(first, first + count)]
 
 
 def kill_mpirun(run):
@@ -102,18 +97,6 @@ def test_what_a_kill_costs_is_the_chunks_at_hand(ricochet, folder):
     assert run["tasks_resumed"] == len(finished) and run["tasks_computed"] == TASKS - len(finished)
 
 
-def is_locked(folder):
-    """Whether any process has the lock file of the output open."""
-    path = str(folder / "s.h5.ckpt" / "lock")
-    for link in Path("/proc").glob("[0-9]*/fd/*"):
-        try:
-            if os.readlink(link) == path:
-                return True
-        except OSError:
-            pass
-    return False
-
-
 def test_a_killed_rank_ends_the_job_at_once(ricochet, folder):
     write(folder, "s.yaml", ENDLESS)
     for rank in (0, 1):
@@ -179,7 +162,7 @@ def test_asked_to_stop_while_it_writes_the_result_a_run_stops_soon(ricochet, fol
         wait_until(lambda: writing_since(folder) > before, "the beginning of the result")
         run.send_signal(signal.SIGUSR1)
         stopped = ricochet.end(run, limit=10)
-        assert "while it was written, with all tasks done; --resume writes it" in stopped.expect(program.STOPPED).err
+        assert "before it was written, with all tasks done; --resume writes it" in stopped.expect(program.STOPPED).err
         assert names(folder) == ["s.h5.ckpt", "s.yaml"] and tasks_in(folder / "s.h5.ckpt") == 10000
     ricochet.run("s.yaml", "--resume", cwd=folder).expect_done()
     assert run_attributes(folder / "s.h5")["tasks_computed"] == 0

@@ -58,6 +58,23 @@ static void solving_stops_at_every_call_and_can_be_repeated(void **state) {
   stops_at_every_call(RIC_METHOD_DENSE);
 }
 
+/* Where there is nothing to admit or refuse, the equations alone ask. */
+static void contact_equations_stop(void **state) {
+  (void)state;
+  for (int limit = 1; limit <= 8; limit++) {
+    countdown c = {.limit = limit};
+    scenario s = scenario_middle(9, RIC_ENDS_FREE, 0.3, 5);
+    ric_orbit_solver *solver = polled_solver(&c, RIC_METHOD_IMPULSE);
+    ric_orbit orbit;
+    ric_error error;
+    assert_int_equal(scenario_solve(&s, solver, &orbit, &error), RIC_ESTOPPED);
+    assert_non_null(strstr(error.message, "contact equations"));
+    ric_orbit_clear(&orbit);
+    ric_orbit_solver_destroy(&solver);
+    scenario_clear(&s);
+  }
+}
+
 static void asking_for_states_stops(void **state) {
   (void)state;
   countdown c = {.limit = INT32_MAX};
@@ -123,6 +140,7 @@ static void multipliers_stop_at_any_call(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(solving_stops_at_every_call_and_can_be_repeated),
+      cmocka_unit_test(contact_equations_stop),
       cmocka_unit_test(asking_for_states_stops),
       cmocka_unit_test(search_for_singular_points_stops),
       cmocka_unit_test(absent_callback_never_stops),

@@ -299,3 +299,68 @@ def test_a_signal_is_heard_from_the_first_instant(ricochet, folder, mpi, delay):
     time.sleep(delay)
     run.send_signal(signal.SIGUSR1)
     ricochet.end(run).expect(STOPPED)
+
+
+# --- runs that wait ---
+
+
+def waits_for_a_pipe(ricochet, folder, ranks):
+    """For a writer that never comes."""
+    os.mkfifo(folder / "s.yaml")
+    return ricochet.start_run("s.yaml", cwd=folder, ranks=ranks)
+
+
+def waits_for_input(ricochet, folder, ranks):
+    """For the rest of a study on standard input."""
+    ends = os.pipe()
+    os.write(ends[1], b"kind: orbits\n")
+    run = ricochet.start_run("/dev/stdin", "-o", "s.h5", cwd=folder, ranks=ranks, before=lambda: os.dup2(ends[0], 0))
+    run.kept_open = ends
+    return run
+
+
+def waits_for_the_lock(ricochet, folder, ranks):
+    """Of a run that is stopped."""
+    write(folder, "s.yaml", SLOW)
+    holder = ricochet.start_run("s.yaml", cwd=folder)
+    wait_until(lambda: tasks_in(folder / "s.h5.ckpt") >= 5, "records")
+    holder.send_signal(signal.SIGSTOP)
+    return ricochet.start_run("s.yaml", "--resume", cwd=folder, ranks=ranks)
+
+
+WAITS = [waits_for_a_pipe, waits_for_input, waits_for_the_lock]
+
+
+def started(run, ranks):
+    """The processes of a run, each of which hears signals by now."""
+    wait_until(lambda: not ranks or len(ranks_of(run)) == ranks, "the ranks")
+    processes = list(ranks_of(run).values()) if ranks else [run.pid]
+    wait_until(lambda: all(hears(p, signal.SIGUSR1) for p in processes), "the beginning of the program")
+    return processes
+
+
+@pytest.mark.parametrize("ranks", [0, 2])
+@pytest.mark.parametrize("wait", WAITS)
+def test_a_run_that_waits_is_ended_by_a_signal(ricochet, folder, wait, ranks):
+    """By each of them within seconds; SIGUSR1 says that nothing was done."""
+    for number in (signal.SIGUSR1, signal.SIGTERM, signal.SIGINT):
+        own = folder / str(int(number))
+        own.mkdir()
+        run = wait(ricochet, own, ranks)
+        started(run, ranks)
+        time.sleep(0.7 if ranks else 0.1)  # MPI starts
+        assert run.poll() is None
+        run.send_signal(number)
+        ended = ricochet.end(run, limit=10)
+        if number == signal.SIGUSR1:
+            ended.expect(STOPPED).expect_line("", "stopped by SIGUSR1 before its first task", "--resume")
+        else:
+            assert ended.code != 0
+        assert "s.h5" not in names(own)
+
+
+def test_the_time_limit_holds_for_a_run_that_waits(ricochet, folder):
+    os.mkfifo(folder / "s.yaml")
+    stopped_early = ricochet.run("s.yaml", "--max-time", "1s", cwd=folder, limit=20)
+    stopped_early.expect_refused(STOPPED, "s.yaml: ", "by --max-time")
+    assert names(folder) == ["s.yaml"]

@@ -19,7 +19,7 @@ struct scenario {
   const char *says; /* expected in the message */
   void (*prepare)(synthetic *s);
   int (*commit)(void *user, message *why);
-  int (*poll)(void *user, message *why);
+  int (*stop)(void *user);
 };
 
 static int rank, ranks;
@@ -85,9 +85,20 @@ static int lost_lock(void *user, message *why) {
   return refuse(why, EXIT_FILES, "the lock was lost");
 }
 
-static int stop_last(void *user, message *why) {
+static int stop_last(void *user) {
   (void)user;
-  return rank == ranks - 1 ? refuse(why, EXIT_STOPPED, "asked to stop") : 0;
+  return rank == ranks - 1;
+}
+
+/* On the last rank, further and further on; every other rank goes on as it would. */
+static int stop_later(void *user) {
+  static int asked, limit = 2;
+  (void)user;
+  if (rank != ranks - 1 || ++asked < limit)
+    return 0;
+  asked = 0;
+  limit *= 2;
+  return 1;
 }
 
 static const scenario scenarios[] = {
@@ -96,7 +107,9 @@ static const scenario scenarios[] = {
     {"one rank cannot write", "a.h5", EXIT_FILES, "a.h5: cannot write /orbits/outcome", limit_later, NULL, NULL},
     {"one rank cannot read its rows", "a.h5", EXIT_RUN, "has no row", read_failure, NULL, NULL},
     {"commit refuses", "a.h5", EXIT_FILES, "the lock was lost", NULL, lost_lock, NULL},
-    {"the last rank is to stop", "a.h5", EXIT_STOPPED, "asked to stop", NULL, NULL, stop_last},
+    {"the last rank is to stop", "a.h5", EXIT_STOPPED, "a.h5: stopped", NULL, NULL, stop_last},
+    {"the last rank is to stop at the 2nd call", "a.h5", EXIT_STOPPED, "a.h5: stopped", NULL, NULL, stop_later},
+    {"the last rank is to stop at the 4th call", "a.h5", EXIT_STOPPED, "a.h5: stopped", NULL, NULL, stop_later},
     {"no such folder", "none/a.h5", EXIT_FILES, "none/a.h5: cannot create it: No such file or directory", NULL, NULL,
      NULL},
     {"two extents of one axis", "a.h5", EXIT_RUN, "axis particle = ", other_extent, NULL, NULL},
@@ -147,7 +160,7 @@ static int run(const scenario *t) {
   honest_read = s.tables[0].read;
   if (t->prepare)
     t->prepare(&s);
-  const result_hooks hooks = {.poll = t->poll, .commit = t->commit};
+  const result_hooks hooks = {.stop = {.call = t->stop}, .commit = t->commit};
   int code = result_write(t->path, &s.header, s.tables, SYNTHETIC_TABLES, &hooks, &why);
   setrlimit(RLIMIT_FSIZE, &before);
   synthetic_clear(&s);
@@ -163,7 +176,7 @@ static int run_good(void) {
     return 1;
   int code = result_write("good.h5", &s.header, s.tables, SYNTHETIC_TABLES, NULL, &why);
   if (!code)
-    code = result_verify("good.h5", &why);
+    code = result_verify("good.h5", (ric_poll){0}, &why);
   if (code)
     fprintf(stderr, "rank %d: after the failures: %s\n", rank, why.text);
   synthetic_clear(&s);

@@ -80,10 +80,11 @@ static void write_values(const chunk_grid *g, const chunk_places *places, uint64
   unsigned char *buffer = malloc(g->bytes + 4);
   const int handle = open(FILE_NAME, O_WRONLY);
   const uint64_t block = 2 * g->chunk[0], row_bytes = bytes_of(g) / g->shape[0];
+  const chunk_file file = {.places = places, .handle = handle, .buffer = buffer};
   assert_true(buffer && handle >= 0);
   for (uint64_t first = 0; first < g->shape[0]; first += block) {
     const uint64_t count = g->shape[0] - first < block ? g->shape[0] - first : block;
-    assert_int_equal(chunks_write(places, set, g, handle, first, count, values + first * row_bytes, buffer), 0);
+    assert_int_equal(chunks_write(&file, set, g, first, count, values + first * row_bytes), 0);
   }
   close(handle);
   free(buffer);

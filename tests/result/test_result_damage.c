@@ -68,7 +68,7 @@ static size_t find(const char *text, size_t length) {
 
 static void assert_refused(const char *says) {
   message why = {""};
-  assert_int_equal(result_verify("damaged.h5", &why), EXIT_FILES);
+  assert_int_equal(result_verify("damaged.h5", (ric_poll){0}, &why), EXIT_FILES);
   assert_ptr_equal(strstr(why.text, "damaged.h5: "), why.text);
   if (!strstr(why.text, says))
     fail_msg("\"%s\" does not say \"%s\"", why.text, says);
@@ -77,7 +77,30 @@ static void assert_refused(const char *says) {
 static void good_file_verifies(void **state) {
   (void)state;
   message why = {""};
-  assert_int_equal(result_verify(RESULT_FILE, &why), 0);
+  assert_int_equal(result_verify(RESULT_FILE, (ric_poll){0}, &why), 0);
+}
+
+/* Says stop from its `limit`-th call on. */
+typedef struct countdown {
+  int calls, limit;
+} countdown;
+
+static int count(void *user) {
+  countdown *c = user;
+  return ++c->calls >= c->limit;
+}
+
+static void verifying_stops_at_any_call(void **state) {
+  (void)state;
+  countdown all = {.limit = INT32_MAX};
+  message why = {""};
+  assert_int_equal(result_verify(RESULT_FILE, (ric_poll){count, &all}, &why), 0);
+  assert_true(all.calls > 10);
+  for (int limit = 1; limit <= all.calls; limit++) {
+    countdown c = {.limit = limit};
+    assert_int_equal(result_verify(RESULT_FILE, (ric_poll){count, &c}, &why), EXIT_STOPPED);
+    assert_int_equal(c.calls, limit);
+  }
 }
 
 static void digest_is_that_of_the_study(void **state) {
@@ -127,7 +150,7 @@ static void flipped_bit_in_a_value_of_the_study_is_refused(void **state) {
 static void flipped_bit_in_a_long_list_of_the_study_is_refused(void **state) {
   (void)state;
   message why = {""};
-  assert_int_equal(result_verify(RESULT_FILE, &why), 0);
+  assert_int_equal(result_verify(RESULT_FILE, (ric_poll){0}, &why), 0);
   store(good.count, find_number(700001), 0x01);
   assert_refused("/study is damaged");
 }
@@ -149,7 +172,7 @@ static void flipped_bits_anywhere_neither_crash_nor_hang(void **state) {
   for (size_t i = 0; i < good.count; i += 37, tried++) {
     message why;
     store(good.count, i, 0x10);
-    int code = result_verify("damaged.h5", &why);
+    int code = result_verify("damaged.h5", (ric_poll){0}, &why);
     assert_true(code == 0 || code == EXIT_FILES);
     noticed += code != 0;
   }
@@ -172,9 +195,9 @@ static void truncated_file_is_refused(void **state) {
 static void foreign_files_are_refused(void **state) {
   (void)state;
   message why;
-  assert_int_equal(result_verify("no such file.h5", &why), EXIT_FILES);
+  assert_int_equal(result_verify("no such file.h5", (ric_poll){0}, &why), EXIT_FILES);
   assert_non_null(strstr(why.text, "No such file or directory"));
-  assert_int_equal(result_verify(".", &why), EXIT_FILES);
+  assert_int_equal(result_verify(".", (ric_poll){0}, &why), EXIT_FILES);
   assert_non_null(strstr(why.text, "not a regular file"));
   FILE *to = fopen("damaged.h5", "wb");
   fputs("kind: orbits\n", to);
@@ -185,6 +208,7 @@ static void foreign_files_are_refused(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(good_file_verifies),
+      cmocka_unit_test(verifying_stops_at_any_call),
       cmocka_unit_test(digest_is_that_of_the_study),
       cmocka_unit_test(flipped_bit_in_text_data_is_refused),
       cmocka_unit_test(flipped_bit_in_numbers_is_refused),

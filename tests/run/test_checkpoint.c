@@ -1,5 +1,7 @@
 #include "checkpoint_scenario.h"
 
+#include "run/stop.h"
+
 static void digest_is_fnv_1a_and_can_be_continued(void **state) {
   (void)state;
   assert_true(digest_bytes(0, "", 0) == UINT64_C(0xcbf29ce484222325));
@@ -257,6 +259,48 @@ static void folder_that_is_not_there_is_refused(void **state) {
   assert_non_null(strstr(why.text, path));
 }
 
+/* Memory that is zero and takes none. */
+static unsigned char *zero_rows(uint64_t bytes) {
+  unsigned char *rows = calloc(bytes, 1);
+  assert_non_null(rows);
+  return rows;
+}
+
+static void a_stop_ends_the_reading_of_many_bytes(void **state) {
+  enum { ROW = 1 << 20, ROWS = 40 };
+  const checkpoint_identity identity = identity_of(ROWS, ROW);
+  checkpoint *c = begin_checkpoint(*state, &identity, 0);
+  unsigned char *rows = zero_rows(ROWS * ROW);
+  message why;
+  assert_int_equal(checkpoint_append(c, 0, ROWS, rows, NULL, &why), 0);
+  assert_int_equal(checkpoint_rescan(c, &why), 0);
+  stop_watch(0);
+  assert_int_equal(checkpoint_read(c, 0, 2, rows, &why), EXIT_STOPPED); /* its whole record is verified */
+  checkpoint_close(&c);
+  assert_int_equal(checkpoint_open(*state, &identity, &c, &why), EXIT_STOPPED);
+  assert_null(c);
+  stop_watch(INFINITY);
+  assert_int_equal(tasks_found(*state, &identity), ROWS);
+  free(rows);
+}
+
+/* The finished tasks of a stopped run are written, unless they are so large that nobody would wait. */
+static void a_stop_gives_up_only_a_huge_record(void **state) {
+  enum { ROW = 10 << 20, FEW = 20, MANY = 30 };
+  const checkpoint_identity identity = identity_of(100, ROW);
+  checkpoint *c = begin_checkpoint(*state, &identity, 0);
+  unsigned char *rows = zero_rows((uint64_t)MANY * ROW);
+  message why;
+  stop_watch(0);
+  assert_int_equal(checkpoint_append(c, 0, FEW, rows, NULL, &why), 0);
+  assert_int_equal(checkpoint_append(c, 50, MANY, rows, NULL, &why), EXIT_STOPPED);
+  stop_watch(INFINITY);
+  assert_int_equal(checkpoint_append(c, 99, 1, rows, NULL, &why), 0); /* behind a whole record */
+  checkpoint_close(&c);
+  assert_int_equal(tasks_found(*state, &identity), FEW + 1);
+  free(rows);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(digest_is_fnv_1a_and_can_be_continued),
@@ -276,6 +320,8 @@ int main(void) {
       checkpoint_test(tasks_outside_the_study_are_not_appended),
       checkpoint_test(removing_takes_the_parts_and_leaves_the_rest),
       checkpoint_test(folder_that_is_not_there_is_refused),
+      checkpoint_test(a_stop_ends_the_reading_of_many_bytes),
+      checkpoint_test(a_stop_gives_up_only_a_huge_record),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

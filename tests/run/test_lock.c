@@ -7,6 +7,7 @@
 #include <time.h>
 
 #include "run/lock.h"
+#include "run/stop.h"
 
 enum { HOLD_FOREVER = -1 };
 static const double wait_forever = INFINITY; /* a test that waits where it should not never ends */
@@ -73,6 +74,17 @@ static void second_taker_is_refused_and_told_the_holder(void **state) {
   assert_non_null(strstr(why.text, host));
   assert_non_null(strstr(why.text, lock_path(state)));
   assert_non_null(strstr(why.text, "; waited "));
+  finish(holder, SIGKILL);
+}
+
+static void a_stop_ends_the_waiting(void **state) {
+  lock *mine;
+  message why;
+  const pid_t holder = start_holder(output_folder(state), 0, HOLD_FOREVER, 0);
+  stop_watch(0.3);
+  assert_int_equal(lock_take(output_folder(state), wait_forever, &mine, &why), EXIT_STOPPED);
+  assert_null(mine);
+  stop_watch(INFINITY);
   finish(holder, SIGKILL);
 }
 
@@ -178,6 +190,7 @@ static void what_waiting_cannot_mend_is_refused_at_once(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       lock_test(second_taker_is_refused_and_told_the_holder),
+      lock_test(a_stop_ends_the_waiting),
       lock_test(taker_waits_for_a_holder_that_leaves),
       lock_test(taker_follows_when_the_holder_removes_file_and_folder),
       lock_test(lock_is_free_once_its_holder_is_killed),

@@ -1,5 +1,11 @@
 #include "study_cases.h"
 
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
 static void unknown_keys_name_the_nearest(void **state) {
   (void)state;
   static const refusal cases[] = {
@@ -233,10 +239,42 @@ static void files_that_cannot_be_read_are_refused(void **state) {
   char *text = NULL;
   size_t length = 0;
   message why = {{0}};
-  assert_int_equal(study_read_file("no/such/study.yaml", &text, &length, &why), EXIT_FILES);
+  assert_int_equal(study_read_file("no/such/study.yaml", (ric_poll){0}, &text, &length, &why), EXIT_FILES);
   assert_non_null(strstr(why.text, "no/such/study.yaml: "));
-  assert_int_equal(study_read_file("/", &text, &length, &why), EXIT_FILES);
+  assert_int_equal(study_read_file("/", (ric_poll){0}, &text, &length, &why), EXIT_FILES);
   assert_null(text);
+}
+
+static int stop_at_third(void *user) {
+  return ++*(int *)user >= 3;
+}
+
+/* A named pipe without a writer, and one whose writer takes its time. */
+static void a_pipe_is_waited_for_until_a_stop(void **state) {
+  (void)state;
+  static const char name[] = "test_study_refusals.pipe";
+  char *text = NULL;
+  size_t length = 0;
+  int asked = 0;
+  message why = {{0}};
+  unlink(name);
+  assert_int_equal(mkfifo(name, 0600), 0);
+  assert_int_equal(study_read_file(name, (ric_poll){stop_at_third, &asked}, &text, &length, &why), EXIT_STOPPED);
+  assert_int_equal(asked, 3);
+  assert_null(text);
+  const pid_t writer = fork();
+  if (writer == 0) {
+    const int to = open(name, O_WRONLY);
+    bool written = write(to, "kind: ", 6) == 6;
+    nanosleep(&(struct timespec){.tv_nsec = 250000000}, NULL);
+    written = written && write(to, "orbits", 6) == 6;
+    _exit(!written);
+  }
+  assert_int_equal(study_read_file(name, (ric_poll){0}, &text, &length, &why), 0);
+  assert_string_equal(text, "kind: orbits");
+  assert_int_equal(waitpid(writer, NULL, 0), writer);
+  free(text);
+  unlink(name);
 }
 
 static void files_are_read_whole_up_to_the_limit(void **state) {
@@ -248,7 +286,7 @@ static void files_are_read_whole_up_to_the_limit(void **state) {
   assert_non_null(file);
   assert_int_equal(fputs(base_study, file) >= 0, 1);
   fclose(file);
-  assert_int_equal(study_read_file(name, &text, &length, &why), 0);
+  assert_int_equal(study_read_file(name, (ric_poll){0}, &text, &length, &why), 0);
   assert_int_equal(length, strlen(base_study));
   assert_string_equal(text, base_study);
   free(text);
@@ -258,7 +296,7 @@ static void files_are_read_whole_up_to_the_limit(void **state) {
     fputc('#', file);
   fclose(file);
   text = NULL;
-  assert_int_equal(study_read_file(name, &text, &length, &why), EXIT_USAGE);
+  assert_int_equal(study_read_file(name, (ric_poll){0}, &text, &length, &why), EXIT_USAGE);
   assert_non_null(strstr(why.text, "8 MiB"));
   assert_null(text);
   remove(name);
@@ -279,6 +317,7 @@ int main(void) {
       cmocka_unit_test(long_values_are_cut_in_messages),
       cmocka_unit_test(cut_values_keep_whole_characters),
       cmocka_unit_test(files_that_cannot_be_read_are_refused),
+      cmocka_unit_test(a_pipe_is_waited_for_until_a_stop),
       cmocka_unit_test(files_are_read_whole_up_to_the_limit),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -35,7 +35,7 @@ static void print_plan(const study *s, const kind_plan *plan) {
 static int check_study(const char *path, const char *const *sets, size_t set_count, message *why) {
   study *s = NULL;
   kind_plan plan;
-  int code = kind_read_study(path, sets, set_count, &s, why);
+  int code = kind_read_study(path, sets, set_count, (ric_poll){0}, &s, why);
   if (!code)
     code = kind_of(s)->plan(s, &plan, why);
   if (!code)

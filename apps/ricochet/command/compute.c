@@ -134,7 +134,7 @@ static uint64_t largest_chunk(const rank *r) {
   return most > 0 ? most : 1;
 }
 
-static int work(rank *r, message *why) {
+static int take_chunks(rank *r, message *why) {
   uint64_t first, size = 0, most = largest_chunk(r);
   double seconds = 0;
   int code = 0, stopped = 0;
@@ -151,6 +151,14 @@ static int work(rank *r, message *why) {
     scheduler_stop(r->scheduler); /* the others finish their chunk */
   if (!code)
     code = scheduler_failure(r->scheduler, why);
+  return code;
+}
+
+/* A signal that ends the process waits until the tasks that are finished have been appended. */
+static int work(rank *r, message *why) {
+  stop_hold_signals();
+  const int code = take_chunks(r, why);
+  stop_release_signals();
   return code;
 }
 
@@ -174,7 +182,7 @@ int compute(const study *s, const kind *k, const kind_plan *plan, checkpoint *c,
             .checkpoint = c,
             .progress = &p,
             .sync_interval = o->checkpoint_seconds};
-  *result = (compute_result){.stopped = STOP_NONE};
+  *result = (compute_result){0};
   r.batch = plan->batch > 0 ? plan->batch : 1;
   r.unit = plan->whole ? r.batch : 1;
   for (size_t i = 0; i < plan->tail_count; i++)
@@ -186,10 +194,8 @@ int compute(const study *s, const kind *k, const kind_plan *plan, checkpoint *c,
     double began = r.synced = clock_seconds();
     code = work(&r, why);
     double ended = clock_seconds();
-    stop_leave_by_signal();
     if (!code)
       code = checkpoint_sync(c, why);
-    result->stopped = (stop_reason)(int)ranks_max((double)stop_asked());
     result->seconds = ranks_max(ended - began);
     result->computed = r.done;
     ranks_sum(&result->computed, 1);

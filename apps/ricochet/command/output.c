@@ -100,7 +100,12 @@ int output_check_result(const output *out, uint64_t digest, uint64_t tasks, uint
   *finished = false;
   if (!exists(out->path) || (done > 0 && done < tasks))
     return 0;
-  bool sound = result_study_digest(out->path, &theirs, &detail) == 0 && result_verify(out->path, &detail) == 0;
+  int code = result_study_digest(out->path, &theirs, &detail);
+  if (!code)
+    code = result_verify(out->path, (ric_poll){.call = stop_poll}, &detail);
+  if (code == EXIT_STOPPED)
+    return code;
+  const bool sound = code == 0;
   *finished = sound && theirs == digest;
   if (*finished || done == tasks) /* a complete checkpoint replaces the result, as the forced run would have */
     return 0;

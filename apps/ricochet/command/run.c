@@ -57,7 +57,8 @@ typedef struct run {
 static int load(run *r, message *why) {
   const run_options *o = &r->options;
   const bool first = ranks_rank() == 0;
-  int code = first ? kind_read_study(o->study_path, o->sets, o->set_count, &r->study, why) : 0;
+  const ric_poll stop = {.call = stop_poll};
+  int code = first ? kind_read_study(o->study_path, o->sets, o->set_count, stop, &r->study, why) : 0;
   code = ranks_agree(code, why);
   if (code)
     return code;
@@ -123,15 +124,9 @@ static void note_mixed(run *r) {
             r->output.path);
 }
 
-static const char *stop_words(stop_reason reason) {
-  static const char *const words[] = {"by another rank", "by SIGUSR1", "by --max-time", "by a signal"};
-  return words[reason];
-}
-
 /* Rows from the checkpoint. */
 static int read_done(void *user, uint64_t first, uint64_t count, unsigned char *rows, message *why) {
   const run *r = user;
-  stop_leave_by_signal();
   return checkpoint_read(r->checkpoint, first, count, rows, why);
 }
 
@@ -153,7 +148,6 @@ typedef struct tail_source {
 
 static int read_tail(void *user, uint64_t first, uint64_t count, unsigned char *rows, message *why) {
   const tail_source *from = user;
-  stop_leave_by_signal();
   return checkpoint_read_entries(from->run->checkpoint, from->tail, first, count, rows, why);
 }
 
@@ -185,15 +179,6 @@ static int read_extra(void *user, uint64_t first, uint64_t count, unsigned char 
   (void)why;
   memcpy(rows, extra->rows + first * extra->layout.row_bytes, count * extra->layout.row_bytes);
   return 0;
-}
-
-static int poll_writing(void *user, message *why) {
-  const run *r = user;
-  stop_leave_by_signal();
-  if (stop_asked() == STOP_NONE)
-    return 0;
-  return refuse(why, EXIT_STOPPED, "%s: stopped %s while it was written, with all tasks done; --resume writes it",
-                r->output.path, stop_words(stop_asked()));
 }
 
 static int check_lock(void *user, message *why) {
@@ -240,7 +225,7 @@ static int write_result(run *r, message *why) {
                           .mixed = r->mixed,
                           .tasks_computed = r->computed.computed,
                           .tasks_resumed = r->resumed};
-  const result_hooks hooks = {.poll = poll_writing, .commit = check_lock, .user = r};
+  const result_hooks hooks = {.stop = {.call = stop_poll}, .commit = check_lock, .user = r};
   result_table tables[MOST_TABLES];
   tail_source tails[KIND_MOST_TAILS];
   size_t count = list_tables(r, tables, tails);
@@ -253,12 +238,6 @@ static int write_result(run *r, message *why) {
     code = result_write(r->output.path, &header, tables, count, &hooks, why);
   free(stored);
   return code;
-}
-
-static int poll_stop(void *user) {
-  (void)user;
-  stop_leave_by_signal();
-  return stop_asked() != STOP_NONE;
 }
 
 /* Every rank has counted the entries; the file is laid out for the numbers of rank 0. */
@@ -280,7 +259,7 @@ static int agree_on_entries(run *r, message *why) {
 /* What tables there are besides those of the tasks, all of it or none. */
 static int find_extras(run *r, const row_source *done, message *why) {
   const unsigned long refusals = ric_memory_refusals();
-  const int code = r->kind->extra(r->study, &r->plan, done, (ric_poll){.call = poll_stop}, r->extras, why);
+  const int code = r->kind->extra(r->study, &r->plan, done, (ric_poll){.call = stop_poll}, r->extras, why);
   if (code || ric_memory_refusals() == refusals)
     return code;
   return refuse(why, EXIT_RUN, "%s: no memory for what follows the tasks; all of them are kept, --resume goes on",
@@ -294,11 +273,8 @@ static int assemble(run *r, message *why) {
   if (code)
     return code;
   note_mixed(r);
-  if (checkpoint_done(r->checkpoint) < study_tasks(r->study)) {
-    return refuse(why, EXIT_STOPPED, "%s: stopped %s with %llu of %llu tasks done; --resume goes on", r->output.path,
-                  stop_words(r->computed.stopped), (unsigned long long)checkpoint_done(r->checkpoint),
-                  (unsigned long long)study_tasks(r->study));
-  }
+  if (checkpoint_done(r->checkpoint) < study_tasks(r->study))
+    return EXIT_STOPPED;
   code = ranks_agree(checkpoint_count_entries(r->checkpoint, why), why);
   if (!code)
     code = agree_on_entries(r, why);
@@ -324,7 +300,7 @@ static void print_summary(const run *r) {
   printf(" -> %s (%.3g s computing, %.3g s in all)\n", r->output.path, r->computed.seconds, clock_seconds() - r->began);
 }
 
-/* Whether the checkpoint has no finished tasks; false if that cannot be determined. */
+/* Counts what is finished: whether the checkpoint has no such tasks; false if that cannot be determined. */
 static bool is_useless(run *r) {
   message ignored;
   bool useless =
@@ -348,17 +324,34 @@ static void print_end(const run *r) {
     print_summary(r);
 }
 
+/* What is to be said of a stop, wherever it happened. Collective. */
+static int explain_stop(const run *r, message *why) {
+  static const char *const reasons[] = {"by another rank", "by SIGUSR1", "by --max-time", "by a signal"};
+  const char *by = reasons[(int)ranks_max((double)stop_asked())];
+  if (!r->checkpoint)
+    return refuse(why, EXIT_STOPPED, "%s: stopped %s before its first task; --resume goes on",
+                  r->output.path[0] ? r->output.path : r->options.study_path, by);
+  const uint64_t done = checkpoint_done(r->checkpoint), tasks = study_tasks(r->study);
+  if (done == tasks)
+    return refuse(why, EXIT_STOPPED, "%s: stopped %s before it was written, with all tasks done; --resume writes it",
+                  r->output.path, by);
+  return refuse(why, EXIT_STOPPED, "%s: stopped %s with %llu of %llu tasks done; --resume goes on", r->output.path, by,
+                (unsigned long long)done, (unsigned long long)tasks);
+}
+
 static int run_study(run *r, message *why) {
   int code = load(r, why);
   if (!code)
     code = claim(r, why);
   if (code)
-    return code;
+    return code == EXIT_STOPPED ? explain_stop(r, why) : code;
   code = open_checkpoint(r, why);
   if (!code && !r->finished)
     code = compute_and_write(r, why);
   ranks_barrier(); /* no rank appends any more */
   bool useless = is_useless(r);
+  if (code == EXIT_STOPPED)
+    explain_stop(r, why);
   checkpoint_close(&r->checkpoint);
   output_release(&r->output, code == 0 || useless);
   if (!code)
@@ -389,7 +382,9 @@ static int start(run *r, int *argc, char ***argv, int code, message *why) {
   stop_watch(r->options.max_seconds); /* before MPI starts, so that no signal is lost */
   int not_launched = launcher_decide(r->options.mpi, &launched, &refused);
   if (launched.parallel) {
+    stop_hold_signals(); /* mpirun can hang where ranks die while MPI starts or ends */
     ranks_start(argc, argv);
+    stop_release_signals();
     not_launched = launcher_check(ranks_count(), &refused);
   }
   r->speaks = ranks_rank() == 0 && !launched.silent;
@@ -415,6 +410,7 @@ int command_run(int argc, char **argv) {
     code = run_study(&r, &why);
   if (code && r.speaks)
     complain(code, &why); /* before a rank exits with its code: mpirun then ends the others at once */
+  stop_hold_signals();
   ranks_finish();
   study_destroy(&r.study);
   for (size_t k = 0; k < KIND_MOST_EXTRAS; k++)

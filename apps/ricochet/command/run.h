@@ -74,9 +74,8 @@ int fit_texts(result_table *tables, size_t count, table *stored, message *why);
  */
 
 typedef struct compute_result {
-  stop_reason stopped; /* on any rank; STOP_NONE when every missing task was done */
-  double seconds;      /* from the first chunk taken to the last finished, over all ranks */
-  uint64_t computed;   /* tasks finished by all ranks in this run */
+  double seconds;    /* from the first chunk taken to the last finished, over all ranks */
+  uint64_t computed; /* tasks finished by all ranks in this run */
 } compute_result;
 
 /** Collective. Computes every task that the checkpoint misses, on all ranks. */

@@ -28,7 +28,7 @@ static int show(what w, const char *path, const char *group, message *why) {
     return result_show_csv(path, group, why);
   if (w == SHOW_CONTENTS)
     return result_show(path, kind_card, why);
-  int code = result_verify(path, why);
+  int code = result_verify(path, (ric_poll){0}, why);
   if (!code)
     printf("%s: sound\n", path);
   return code;

@@ -89,8 +89,11 @@ struct kind {
 /** The schema of studies: every kind, every type of model, and their keys. */
 extern const schema studies;
 
-/** Reads a study file, and what it refers to. @returns as study_read_file, study_parse and `resolve` */
-int kind_read_study(const char *path, const char *const *sets, size_t set_count, study **out, message *why);
+/** Reads a study file, and what it refers to.
+ *  @param stop  asked while a pipe has nothing to read
+ *  @returns as study_read_file, study_parse and `resolve` */
+int kind_read_study(const char *path, const char *const *sets, size_t set_count, ric_poll stop, study **out,
+                    message *why);
 
 /** What the kind of this name says of its results; NULL for nothing, and for no kind. */
 result_card *kind_card(const char *name);

@@ -47,11 +47,12 @@ const schema studies = {.keys = keys,
                         .model = KEY_MODEL_TYPE,
                         .chapters = chapters};
 
-int kind_read_study(const char *path, const char *const *sets, size_t set_count, study **out, message *why) {
+int kind_read_study(const char *path, const char *const *sets, size_t set_count, ric_poll stop, study **out,
+                    message *why) {
   char *text = NULL;
   study_source from = {.schema = &studies, .name = path, .sets = sets, .set_count = set_count};
   *out = NULL;
-  int code = study_read_file(path, &text, &from.length, why);
+  int code = study_read_file(path, stop, &text, &from.length, why);
   from.text = text;
   if (!code)
     code = study_parse(&from, out, why);

@@ -170,7 +170,7 @@ static void fill_chunk(const chunk_grid *g, const uint64_t *corner, uint64_t row
     }
 }
 
-static int write_at(int handle, const unsigned char *bytes, uint64_t count, uint64_t address) {
+int chunks_write_at(int handle, const unsigned char *bytes, uint64_t count, uint64_t address) {
   while (count > 0) {
     const ssize_t written = pwrite(handle, bytes, count, (off_t)address);
     if (written < 0 && errno != EINTR)
@@ -184,8 +184,8 @@ static int write_at(int handle, const unsigned char *bytes, uint64_t count, uint
   return 0;
 }
 
-int chunks_write(const chunk_places *places, uint64_t set, const chunk_grid *g, int handle, uint64_t first,
-                 uint64_t count, const unsigned char *values, unsigned char *buffer) {
+int chunks_write(const chunk_file *file, uint64_t set, const chunk_grid *g, uint64_t first, uint64_t count,
+                 const unsigned char *values) {
   const uint64_t across[] = {g->axes > 1 ? g->counts[1] : 1, g->axes > 2 ? g->counts[2] : 1};
   uint64_t row_bytes = g->value_bytes;
   for (int i = 1; i < g->axes; i++)
@@ -195,12 +195,14 @@ int chunks_write(const chunk_places *places, uint64_t set, const chunk_grid *g, 
     for (uint64_t k = 0; !failed && k < across[0] * across[1]; k++) {
       const uint64_t corner[PLAN_MOST_AXES] = {0, k / across[1] * g->chunk[1], k % across[1] * g->chunk[2]};
       const uint64_t number = (first + row) / g->chunk[0] * across[0] * across[1] + k;
-      const chunk_run *run = run_of(places, set, number);
-      memset(buffer, 0, g->bytes);
-      fill_chunk(g, corner, at_most(g->chunk[0], count - row), values + row * row_bytes, buffer);
-      put_checksum(buffer, g->bytes);
-      failed = write_at(handle, buffer, g->bytes + CHECKSUM_BYTES,
-                        run->address + (number - run->first) * (g->bytes + CHECKSUM_BYTES));
+      const chunk_run *run = run_of(file->places, set, number);
+      memset(file->buffer, 0, g->bytes);
+      fill_chunk(g, corner, at_most(g->chunk[0], count - row), values + row * row_bytes, file->buffer);
+      put_checksum(file->buffer, g->bytes);
+      failed = chunks_write_at(file->handle, file->buffer, g->bytes + CHECKSUM_BYTES,
+                               run->address + (number - run->first) * (g->bytes + CHECKSUM_BYTES));
+      if (!failed && ric_poll_stops(file->stop))
+        failed = ECANCELED;
     }
   return failed;
 }

@@ -42,12 +42,22 @@ int chunks_find(chunk_places *places, const file_place *at, hid_t data_set, uint
 int chunks_share(chunk_places *places, const file_place *at);
 void chunks_clear(chunk_places *places);
 
+/** Writes bytes to a place of a file. @returns 0, or an error of the system */
+int chunks_write_at(int handle, const unsigned char *bytes, uint64_t count, uint64_t address);
+
+/** A file that chunks are written to. Borrowed. */
+typedef struct chunk_file {
+  const chunk_places *places;
+  int handle;
+  ric_poll stop;         /* asked for each chunk */
+  unsigned char *buffer; /* [bytes of the largest chunk + 4] */
+} chunk_file;
+
 /** Writes the chunks that hold rows [first, first + count) of a data set.
  *  @param first  the first row of a chunk; count: whole chunks, or up to the last row
  *  @param values  [count][values of a row] in order
- *  @param buffer  [g->bytes + 4]
- *  @returns 0, or an error of the system */
-int chunks_write(const chunk_places *places, uint64_t set, const chunk_grid *g, int handle, uint64_t first,
-                 uint64_t count, const unsigned char *values, unsigned char *buffer);
+ *  @returns 0, an error of the system, or ECANCELED to stop */
+int chunks_write(const chunk_file *file, uint64_t set, const chunk_grid *g, uint64_t first, uint64_t count,
+                 const unsigned char *values);
 
 #endif

@@ -58,7 +58,7 @@ hid_t data_set_type(const column *c) {
 
 /* --- axes --- */
 
-static int fill_scale(const file_place *at, hid_t set, const plan_scale *scale) {
+static int fill_scale(const file_place *at, ric_poll stop, hid_t set, const plan_scale *scale) {
   int code = 0;
   hid_t space = H5I_INVALID_HID, memory = H5I_INVALID_HID;
   enum { BLOCK = 8192 };
@@ -73,6 +73,8 @@ static int fill_scale(const file_place *at, hid_t set, const plan_scale *scale) 
     HDF5_TRY(at, H5Dwrite(set, H5T_NATIVE_INT64, memory, space, H5P_DEFAULT, values), "write /%s", scale->name);
     code = hdf5_close(at, memory, 0);
     memory = H5I_INVALID_HID;
+    if (!code)
+      code = result_ask(stop, at);
     if (code)
       goto out;
   }
@@ -93,7 +95,7 @@ static int put_description(const file_place *at, hid_t set, const char *units, c
   return code;
 }
 
-int data_set_create_scale(const file_place *at, hid_t file, const plan_scale *scale) {
+int data_set_create_scale(const file_place *at, ric_poll stop, hid_t file, const plan_scale *scale) {
   int code = 0;
   hid_t space = H5I_INVALID_HID, list = H5I_INVALID_HID, set = H5I_INVALID_HID;
   const table row = {.row_bytes = sizeof(int64_t)};
@@ -109,7 +111,7 @@ int data_set_create_scale(const file_place *at, hid_t file, const plan_scale *sc
   snprintf(long_name, sizeof long_name, "index along the axis %s", scale->name);
   code = put_description(at, set, "1", long_name, "counts from 0", scale->name);
   if (!code)
-    code = fill_scale(at, set, scale);
+    code = fill_scale(at, stop, set, scale);
 out:
   code = hdf5_close(at, set, code);
   code = hdf5_close(at, list, code);

@@ -8,6 +8,9 @@
 
 #include <hdf5.h>
 #include <hdf5_hl.h>
+#if H5_VERSION_GE(1, 13, 0)
+#include <H5FDdevelop.h> /* file drivers */
+#endif
 
 #include "../base/message.h"
 

@@ -22,6 +22,7 @@ typedef struct plan_scale {
 
 typedef struct plan {
   const result_header *header;
+  ric_poll stop;        /* asked while the file is written; set by the writer */
   char *partial;        /* path of the file while it is written */
   result_table *tables; /* [table_count] the caller's, then /sweep */
   size_t table_count;

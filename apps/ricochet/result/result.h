@@ -58,11 +58,12 @@ typedef struct result_header {
  * run left. @returns 0 or EXIT_USAGE */
 int result_check_partial(const char *path, message *why);
 
-/** What the writing asks of its caller; a function may be NULL. A code that is not 0 ends the writing on all ranks. */
+/** What the writing asks of its caller; a function may be NULL. */
 typedef struct result_hooks {
-  int (*poll)(void *user, message *why);   /* on every rank, for each block of rows: is the run to stop? */
-  int (*commit)(void *user, message *why); /* on rank 0, just before the rename: does this run still hold the lock? */
-  void *user;
+  ric_poll stop;                           /* on every rank, all along: is the run to stop? */
+  int (*commit)(void *user, message *why); /* on rank 0, just before the rename: does this run still hold the lock? A
+                                              code that is not 0 ends the writing on all ranks. */
+  void *user;                              /* of commit */
 } result_hooks;
 
 /** Collective over all ranks: writes `path`.tmp, re-opens and verifies it, syncs, renames it to `path` and syncs the
@@ -72,14 +73,19 @@ typedef struct result_hooks {
  *  The process must ignore SIGXFSZ: then a limit on the size of files gives an error like any other.
  *  @param hooks  NULL for none
  *  @returns 0; EXIT_FILES when it cannot be written; EXIT_RUN when tables contradict each other or memory runs out;
- *           what `read` or a hook returned */
+ *           EXIT_STOPPED; what `read` or `commit` returned */
 int result_write(const char *path, const result_header *header, const result_table *tables, size_t table_count,
                  const result_hooks *hooks, message *why);
 
 /** Reads every data set of the file through its checksums, and checks the study's text and the references to the axes,
  *  on this process alone, without MPI_Init.
- *  @returns 0 or EXIT_FILES naming what is damaged, also if `path` is not a result of this program. */
-int result_verify(const char *path, message *why);
+ *  @returns 0, EXIT_STOPPED, or EXIT_FILES naming what is damaged, also if `path` is not a result of this program. */
+int result_verify(const char *path, ric_poll stop, message *why);
+
+/** Whether to stop. @returns 0 or EXIT_STOPPED */
+int result_ask(ric_poll stop, const file_place *at);
+/** EXIT_STOPPED with its reason. */
+int result_stopped(const file_place *at);
 
 /** Digest of the study that a result belongs to (root attribute `study_digest`).
  *  @returns 0, or EXIT_FILES if it is not a result of this program. */

@@ -11,10 +11,12 @@
 #include "../run/ranks.h"
 #include "data_set.h"
 
+enum { PIECE_BYTES = 16 << 20 /* of a large row, between two polls */ };
+
 /* One block of rows of a table, and one column of it. */
 typedef struct block {
   const file_place *at;
-  const result_hooks *hooks;
+  ric_poll stop;
   const result_table *from;
   uint64_t height;       /* rows */
   unsigned char *rows;   /* [height][row_bytes] */
@@ -22,10 +24,10 @@ typedef struct block {
   unsigned char *chunk;  /* the largest of a column, with its checksum */
 } block;
 
-static int block_allocate(block *b, const file_place *at, const result_hooks *hooks, const result_table *from) {
+static int block_allocate(block *b, const plan *p, const file_place *at, const result_table *from) {
   const table *layout = from->layout;
   size_t widest = 1, chunk = 1;
-  *b = (block){.at = at, .hooks = hooks, .from = from, .height = plan_block_rows(layout)};
+  *b = (block){.at = at, .stop = p->stop, .from = from, .height = plan_block_rows(layout)};
   for (size_t k = 0; k < layout->column_count; k++) {
     const chunk_grid g = chunk_grid_of(from, &layout->columns[k]);
     if (column_bytes(&layout->columns[k]) > widest)
@@ -49,10 +51,6 @@ static void block_clear(block *b) {
   free(b->chunk);
 }
 
-static int poll(const block *b) {
-  return b->hooks->poll ? b->hooks->poll(b->hooks->user, b->at->why) : 0;
-}
-
 static uint64_t rows_from(const block *b, uint64_t first) {
   return b->from->rows - first < b->height ? b->from->rows - first : b->height;
 }
@@ -70,11 +68,17 @@ typedef struct row_file {
   int handle;
 } row_file;
 
-/* Gathers a column from the rows of a block. */
-static void unpack(const block *b, const column *c, uint64_t count) {
+/* Gathers a column from the rows of a block, of which one alone may be gigabytes. @returns 0 or EXIT_STOPPED */
+static int unpack(const block *b, const column *c, uint64_t count) {
   const size_t bytes = column_bytes(c), row_bytes = b->from->layout->row_bytes;
+  int code = 0;
   for (uint64_t i = 0; i < count; i++)
-    memcpy(b->values + i * bytes, b->rows + i * row_bytes + c->offset, bytes);
+    for (size_t done = 0; !code && done < bytes; done += PIECE_BYTES) {
+      const size_t left = bytes - done, step = left < PIECE_BYTES ? left : PIECE_BYTES;
+      memcpy(b->values + i * bytes + done, b->rows + i * row_bytes + c->offset + done, step);
+      code = left > step ? result_ask(b->stop, b->at) : 0;
+    }
+  return code;
 }
 
 static int remember(const block *b, records *written, const column *c, uint64_t count) {
@@ -89,8 +93,13 @@ static int remember(const block *b, records *written, const column *c, uint64_t 
 static int write_column(const block *b, const row_file *f, const column *c, uint64_t set, uint64_t first,
                         uint64_t count) {
   const chunk_grid g = chunk_grid_of(b->from, c);
-  unpack(b, c, count);
-  const int failed = chunks_write(f->places, set, &g, f->handle, first, count, b->values, b->chunk);
+  const chunk_file file = {.places = f->places, .handle = f->handle, .stop = b->stop, .buffer = b->chunk};
+  const int code = unpack(b, c, count);
+  if (code)
+    return code;
+  const int failed = chunks_write(&file, set, &g, first, count, b->values);
+  if (failed == ECANCELED)
+    return result_stopped(b->at);
   if (failed)
     return refuse(b->at->why, EXIT_FILES, "%s: cannot write /%s/%s: %s", b->at->path, b->from->layout->group, c->name,
                   strerror(failed));
@@ -100,7 +109,7 @@ static int write_column(const block *b, const row_file *f, const column *c, uint
 static int write_block(const block *b, const row_file *f, uint64_t first_set, uint64_t first) {
   const result_table *from = b->from;
   const uint64_t count = rows_from(b, first);
-  int code = poll(b);
+  int code = result_ask(b->stop, b->at);
   if (!code)
     code = from->read(from->user, first, count, b->rows, b->at->why);
   for (size_t k = 0; !code && k < from->layout->column_count; k++)
@@ -109,8 +118,7 @@ static int write_block(const block *b, const row_file *f, uint64_t first_set, ui
   return code;
 }
 
-int rows_write(const plan *p, const chunk_places *places, const file_place *at, const result_hooks *hooks,
-               records *written) {
+int rows_write(const plan *p, const chunk_places *places, const file_place *at, records *written) {
   const uint64_t rank = (uint64_t)ranks_rank(), ranks = (uint64_t)ranks_count();
   uint64_t set = 0;
   const row_file f = {places, written, open(p->partial, O_WRONLY | O_NOFOLLOW | O_CLOEXEC)};
@@ -120,7 +128,7 @@ int rows_write(const plan *p, const chunk_places *places, const file_place *at, 
   written->record_bytes = sizeof(uint64_t);
   for (size_t i = 0; !code && i < p->table_count; i++) {
     block b;
-    code = block_allocate(&b, at, hooks, &p->tables[i]);
+    code = block_allocate(&b, p, at, &p->tables[i]);
     for (uint64_t k = rank; !code && k * b.height < b.from->rows; k += ranks)
       code = write_block(&b, &f, set, k * b.height);
     set += p->tables[i].layout->column_count;
@@ -135,22 +143,40 @@ int rows_write(const plan *p, const chunk_places *places, const file_place *at, 
 
 /* --- reading back --- */
 
-static int read_column(const block *b, hid_t set, const column *c, uint64_t first, uint64_t count) {
+static int read_slab(const block *b, hid_t set, const column *c, const hsize_t *start, const hsize_t *size,
+                     unsigned char *values) {
   int code = 0;
   const char *group = b->from->layout->group;
-  const hsize_t start[PLAN_MOST_AXES] = {first};
-  hsize_t size[PLAN_MOST_AXES];
-  const int axes = data_set_shape(c, count, size);
+  const int axes = 1 + column_axes(c);
   hid_t in_file = H5I_INVALID_HID, in_memory = H5I_INVALID_HID, type = H5I_INVALID_HID;
   HDF5_TRY(b->at, type = data_set_type(c), "read /%s/%s", group, c->name);
   HDF5_TRY(b->at, in_file = H5Dget_space(set), "read /%s/%s", group, c->name);
   HDF5_TRY(b->at, H5Sselect_hyperslab(in_file, H5S_SELECT_SET, start, NULL, size, NULL), "read /%s/%s", group, c->name);
   HDF5_TRY(b->at, in_memory = H5Screate_simple(axes, size, NULL), "read /%s/%s", group, c->name);
-  HDF5_TRY(b->at, H5Dread(set, type, in_memory, in_file, H5P_DEFAULT, b->values), "read /%s/%s", group, c->name);
+  HDF5_TRY(b->at, H5Dread(set, type, in_memory, in_file, H5P_DEFAULT, values), "read /%s/%s", group, c->name);
 out:
   code = hdf5_close(b->at, in_memory, code);
   code = hdf5_close(b->at, in_file, code);
   return hdf5_close(b->at, type, code);
+}
+
+/* Rows of a column; a single one that is large in pieces along its first axis. */
+static int read_column(const block *b, hid_t set, const column *c, uint64_t first, uint64_t count) {
+  hsize_t start[PLAN_MOST_AXES] = {first}, size[PLAN_MOST_AXES];
+  data_set_shape(c, count, size);
+  if (count > 1 || column_bytes(c) <= PIECE_BYTES)
+    return read_slab(b, set, c, start, size, b->values);
+  const hsize_t all = size[1];
+  const size_t each = column_bytes(c) / all;
+  const hsize_t step = each < PIECE_BYTES ? PIECE_BYTES / each : 1;
+  int code = 0;
+  for (; !code && start[1] < all; start[1] += step) {
+    code = result_ask(b->stop, b->at);
+    size[1] = all - start[1] < step ? all - start[1] : step;
+    if (!code)
+      code = read_slab(b, set, c, start, size, b->values + start[1] * each);
+  }
+  return code;
 }
 
 /* Digests come in the order in which they were made. */
@@ -176,7 +202,7 @@ static int check_table(const block *b, hid_t file, const records *written, uint6
     HDF5_TRY(b->at, sets[k] = H5Dopen2(file, name, H5P_DEFAULT), "open %s", name);
   }
   for (uint64_t i = rank; !code && i * b->height < b->from->rows; i += ranks) {
-    code = poll(b);
+    code = result_ask(b->stop, b->at);
     for (size_t k = 0; !code && k < layout->column_count; k++)
       if (is_stored(b->from, &layout->columns[k])) {
         uint64_t digest;
@@ -190,14 +216,14 @@ out:
   return code;
 }
 
-int rows_check(const plan *p, const file_place *at, const result_hooks *hooks, const records *written) {
+int rows_check(const plan *p, const file_place *at, const records *written) {
   int code = 0;
   uint64_t next = 0;
   hid_t file = H5I_INVALID_HID;
   HDF5_TRY(at, file = H5Fopen(p->partial, H5F_ACC_RDONLY, H5P_DEFAULT), "open it");
   for (size_t i = 0; !code && i < p->table_count; i++) {
     block b;
-    code = block_allocate(&b, at, hooks, &p->tables[i]);
+    code = block_allocate(&b, p, at, &p->tables[i]);
     if (!code)
       code = check_table(&b, file, written, &next);
     block_clear(&b);

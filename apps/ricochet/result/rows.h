@@ -7,11 +7,10 @@
 
 /** Writes the blocks of rows of this rank: one of each table for every rank in turn.
  *  @param written  zeroed; digests of what was written, for rows_check */
-int rows_write(const plan *p, const chunk_places *places, const file_place *at, const result_hooks *hooks,
-               records *written);
+int rows_write(const plan *p, const chunk_places *places, const file_place *at, records *written);
 
 /** Reads the same blocks through HDF5 and their checksums, and compares them with what was written: a chunk in a wrong
  *  place, or bytes that the storage lost, are EXIT_FILES. */
-int rows_check(const plan *p, const file_place *at, const result_hooks *hooks, const records *written);
+int rows_check(const plan *p, const file_place *at, const records *written);
 
 #endif

@@ -249,7 +249,7 @@ static int put_run(const file_place *at, hid_t file, const result_header *header
 static int fill(const file_place *at, hid_t file, const plan *p) {
   int code = put_root(at, file, p->header);
   for (size_t i = 0; !code && i < p->scale_count; i++)
-    code = data_set_create_scale(at, file, &p->scales[i]);
+    code = data_set_create_scale(at, p->stop, file, &p->scales[i]);
   for (size_t i = 0; !code && i < p->table_count; i++)
     code = create_table(at, file, &p->tables[i]);
   if (!code)
@@ -329,6 +329,8 @@ static int skeleton_make(const plan *p, const file_place *at, skeleton_image *im
 
 /* --- bytes and space, without HDF5 --- */
 
+enum { PIECE_BYTES = 16 << 20, RESERVED_BYTES = 256 << 20 /* at a time */ };
+
 static int write_all(int handle, const unsigned char *bytes, size_t count) {
   while (count > 0) {
     ssize_t written = write(handle, bytes, count);
@@ -342,14 +344,28 @@ static int write_all(int handle, const unsigned char *bytes, size_t count) {
   return 0;
 }
 
-static int reserve(int handle, uint64_t bytes) {
-  int failed;
-  do
-    failed = posix_fallocate(handle, 0, (off_t)bytes);
-  while (failed == EINTR);
+/* Piece by piece: a file system without reservation of its own writes to every block. */
+static int reserve(int handle, uint64_t bytes, ric_poll stop) {
+  int failed = 0;
+  for (uint64_t done = 0; (!failed || failed == EINTR) && done < bytes;) {
+    const uint64_t left = bytes - done, step = left < RESERVED_BYTES ? left : RESERVED_BYTES;
+    failed = ric_poll_stops(stop) ? ECANCELED : posix_fallocate(handle, (off_t)done, (off_t)step);
+    done += failed ? 0 : step;
+  }
   return failed == EINVAL || failed == EOPNOTSUPP
              ? 0
              : failed; /* a file system without reservation: the write may fail later */
+}
+
+/* The image, a piece at a time. @returns 0, an error of the system, or ECANCELED to stop */
+static int write_pieces(int handle, const skeleton_image *image, ric_poll stop) {
+  int failed = 0;
+  for (size_t done = 0; !failed && done < image->size; done += PIECE_BYTES) {
+    const size_t left = image->size - done;
+    failed = ric_poll_stops(stop) ? ECANCELED
+                                  : write_all(handle, image->bytes + done, left < PIECE_BYTES ? left : PIECE_BYTES);
+  }
+  return failed;
 }
 
 static int write_image(const plan *p, const file_place *at, const skeleton_image *image) {
@@ -357,18 +373,46 @@ static int write_image(const plan *p, const file_place *at, const skeleton_image
   if (handle < 0)
     return refuse(at->why, EXIT_FILES, "%s: cannot create it: %s", at->path, strerror(errno));
   uint64_t total = image->size + plan_bytes(p);
-  int failed = write_all(handle, image->bytes, image->size);
+  int failed = write_pieces(handle, image, p->stop);
   if (!failed)
-    failed = reserve(handle, total);
+    failed = reserve(handle, total, p->stop);
   if (close(handle) != 0 && !failed)
     failed = errno;
-  if (!failed)
-    return 0;
+  if (!failed || failed == ECANCELED)
+    return failed ? result_stopped(at) : 0;
   return refuse(at->why, EXIT_FILES, "%s: cannot write its %llu bytes: %s", at->path, (unsigned long long)total,
                 strerror(failed));
 }
 
 /* --- layout of the chunks --- */
+
+/* HDF5 writes zeros to every chunk that it allocates. Ranks overwrite all of them, and until then the reserved space
+ * reads as zeros, whose checksum is zero: those writes are left out. They would take as long as all rows. */
+static herr_t write_metadata(H5FD_t *file, H5FD_mem_t type, hid_t transfer, haddr_t address, size_t size,
+                             const void *bytes) {
+  void *handle;
+  (void)transfer;
+  if (type == H5FD_MEM_DRAW)
+    return 0;
+  if (file->cls->get_handle(file, H5P_DEFAULT, &handle) < 0)
+    return -1;
+  const int failed = chunks_write_at(*(int *)handle, bytes, size, address);
+  if (failed)
+    (void)H5Epush2(H5E_DEFAULT, __FILE__, __func__, __LINE__, H5E_ERR_CLS, H5E_IO, H5E_WRITEERROR, "%s",
+                   strerror(failed));
+  return failed ? -1 : 0;
+}
+
+/* HDF5's driver of plain files, but with the function above. Negative on failure. */
+static hid_t layout_driver(const char *path, hid_t access) {
+  H5FD_t *plain = H5FDopen(path, H5F_ACC_RDONLY, access, HADDR_UNDEF);
+  if (!plain)
+    return H5I_INVALID_HID;
+  H5FD_class_t class = *plain->cls;
+  class.name = "ricochet_layout";
+  class.write = write_metadata;
+  return H5FDclose(plain) < 0 ? H5I_INVALID_HID : H5FDregister(&class);
+}
 
 /* The first write to a data set allocates all its chunks; one value is enough. */
 static int touch(const file_place *at, hid_t set, const char *name, const column *c) {
@@ -411,18 +455,24 @@ out:
 static int lay_out_chunks(const plan *p, const file_place *at, const skeleton_image *image, chunk_places *places) {
   int code = 0;
   uint64_t set = 0;
-  hid_t access = H5I_INVALID_HID, file = H5I_INVALID_HID;
+  hid_t access = H5I_INVALID_HID, driver = H5I_INVALID_HID, file = H5I_INVALID_HID;
   HDF5_TRY(at, access = skeleton_access(), "lay it out");
+  HDF5_TRY(at, driver = layout_driver(p->partial, access), "lay it out");
+  HDF5_TRY(at, H5Pset_driver(access, driver, NULL), "lay it out");
   HDF5_TRY(at, file = H5Fopen(p->partial, H5F_ACC_RDWR, access), "lay it out");
   for (size_t i = 0; i < p->table_count; i++)
     for (size_t k = 0; !code && k < p->tables[i].layout->column_count; k++, set++)
-      if (p->tables[i].rows > 0 && column_values(&p->tables[i].layout->columns[k]) > 0)
-        code = lay_out_set(at, file, &p->tables[i], &p->tables[i].layout->columns[k], set, places);
+      if (p->tables[i].rows > 0 && column_values(&p->tables[i].layout->columns[k]) > 0) {
+        code = result_ask(p->stop, at);
+        if (!code)
+          code = lay_out_set(at, file, &p->tables[i], &p->tables[i].layout->columns[k], set, places);
+      }
   if (!code)
     code = heap_put_checksums(at, file, image);
 out:
   code = hdf5_close(at, file, code);
-  return hdf5_close(at, access, code);
+  code = hdf5_close(at, access, code);
+  return hdf5_close(at, driver, code);
 }
 
 int space_create(const plan *p, const file_place *at, chunk_places *places) {

@@ -21,9 +21,9 @@ hid_t skeleton_access(void);
  * HDF5 fails badly on a full disk: a close that cannot flush leaves a broken handle. HDF5 therefore never allocates
  * space on the disk: the skeleton is made in memory and written as plain bytes, and the file system reserves all the
  * space of the result. A full disk, a quota or a limit on the file's size appears there, in calls that fail cleanly.
- * Then HDF5 allocates all chunks, which ranks overwrite. */
+ * Then HDF5 allocates all chunks, without writing them: ranks do. */
 
-/** Creates `p->partial` on this process alone, all data sets laid out and filled with zeros, and finds their chunks.
+/** Creates `p->partial` on this process alone, all data sets laid out, and finds their chunks.
  *  @param places  zeroed */
 int space_create(const plan *p, const file_place *at, chunk_places *places);
 

@@ -206,6 +206,7 @@ static int objects_check(const file_place *at, hid_t file) {
 typedef struct verifier {
   const file_place *at;
   hid_t file;
+  ric_poll stop;
   bool with_rows; /* or only the axes, which are the data sets in the root */
 } verifier;
 
@@ -241,8 +242,11 @@ static int read_slabs(const verifier *v, const char *name, const slabs *s) {
   if (!bytes)
     return refuse(v->at->why, EXIT_RUN, "%s: out of memory for %llu rows of %s", v->at->path,
                   (unsigned long long)s->height, name);
-  for (hsize_t first = 0; !code && first < s->shape[0]; first += s->height)
-    code = read_slab(v, name, s, first, bytes);
+  for (hsize_t first = 0; !code && first < s->shape[0]; first += s->height) {
+    code = result_ask(v->stop, v->at);
+    if (!code)
+      code = read_slab(v, name, s, first, bytes);
+  }
   free(bytes);
   return code;
 }
@@ -385,8 +389,8 @@ static int check_expected(const verifier *v, const plan *expected) {
   return code;
 }
 
-int verify_file(const file_place *at, const char *path, const plan *expected) {
-  verifier v = {.at = at, .with_rows = !expected};
+int verify_file(const file_place *at, const char *path, const plan *expected, ric_poll stop) {
+  verifier v = {.at = at, .stop = stop, .with_rows = !expected};
   int code = reader_open(at, path, &v.file);
   if (code)
     return code;
@@ -406,9 +410,9 @@ int verify_file(const file_place *at, const char *path, const plan *expected) {
   return hdf5_close(at, v.file, code);
 }
 
-int result_verify(const char *path, message *why) {
+int result_verify(const char *path, ric_poll stop, message *why) {
   const file_place at = {path, why};
-  return verify_file(&at, path, NULL);
+  return verify_file(&at, path, NULL, stop);
 }
 
 int result_study_digest(const char *path, uint64_t *digest, message *why) {

@@ -9,8 +9,9 @@
  * the axes and of all tables, read through their checksums.
  *  @param path  of the file to open; `at` names the one for messages
  *  @param expected  the plan that it was written by: data sets must have its shapes, and the rows of tables, which
- *         rows_check has read, are not read again; NULL if unknown */
-int verify_file(const file_place *at, const char *path, const plan *expected);
+ *         rows_check has read, are not read again; NULL if unknown
+ *  @param stop  asked for each piece of data */
+int verify_file(const file_place *at, const char *path, const plan *expected, ric_poll stop);
 
 /** Stores the digest of the attributes of /study, which is complete, in the root attribute `study_values_checksum`. */
 int study_put_checksum(const file_place *at, hid_t file);

@@ -17,6 +17,14 @@
 #include "skeleton.h"
 #include "verify.h"
 
+int result_stopped(const file_place *at) {
+  return refuse(at->why, EXIT_STOPPED, "%s: stopped while it was read or written", at->path);
+}
+
+int result_ask(ric_poll stop, const file_place *at) {
+  return ric_poll_stops(stop) ? result_stopped(at) : 0;
+}
+
 /* The beginning of an HDF5 file, or of nothing. */
 static bool is_partial(const char *path) {
   static const unsigned char signature[8] = {0x89, 'H', 'D', 'F', '\r', '\n', 0x1a, '\n'};
@@ -117,10 +125,13 @@ static int make_file(writer *w) {
 
 int result_write(const char *path, const result_header *header, const result_table *tables, size_t table_count,
                  const result_hooks *hooks, message *why) {
-  writer w = {.at = {path, why}, .hooks = hooks ? *hooks : (result_hooks){0}};
+  writer w = {.at = {path, why}};
+  if (hooks)
+    w.hooks = *hooks;
   const int rank = ranks_rank();
   hdf5_quiet();
   int code = ranks_agree(plan_init(&w.plan, path, header, tables, table_count, why), why);
+  w.plan.stop = w.hooks.stop;
   if (!code)
     code = ranks_agree(rank == 0 ? make_file(&w) : 0, why);
   if (!code)
@@ -128,11 +139,11 @@ int result_write(const char *path, const result_header *header, const result_tab
   if (!code)
     code = ranks_agree(check_shared_file(&w), why);
   if (!code)
-    code = ranks_agree(rows_write(&w.plan, &w.places, &w.at, &w.hooks, &w.written), why);
+    code = ranks_agree(rows_write(&w.plan, &w.places, &w.at, &w.written), why);
   if (!code)
-    code = ranks_agree(rows_check(&w.plan, &w.at, &w.hooks, &w.written), why);
+    code = ranks_agree(rows_check(&w.plan, &w.at, &w.written), why);
   if (!code)
-    code = ranks_agree(rank == 0 ? verify_file(&w.at, w.plan.partial, &w.plan) : 0, why);
+    code = ranks_agree(rank == 0 ? verify_file(&w.at, w.plan.partial, &w.plan, w.plan.stop) : 0, why);
   if (!code)
     code = ranks_agree(rank == 0 ? publish(&w) : 0, why);
   if (code && w.made)

@@ -11,6 +11,13 @@
 #include <unistd.h>
 
 #include "checkpoint_files.h"
+#include "stop.h"
+
+enum {
+  WRITE_BYTES = 16 << 20,     /* at a time */
+  FINISHED_BYTES = 256 << 20, /* of a record that is written in spite of a stop; a larger one may take too long */
+  MOST_PIECES = 4 + CHECKPOINT_MOST_TAILS,
+};
 
 uint64_t part_header_check(const part_header *header) {
   return digest_bytes(0, header, offsetof(part_header, check));
@@ -130,32 +137,58 @@ static void advance(struct iovec *pieces, int count, size_t written) {
   }
 }
 
+/* Whether to give a record up, of which so many bytes are done. */
+static bool is_given_up(uint64_t done) {
+  return done > FINISHED_BYTES && stop_asked() != STOP_NONE;
+}
+
+static int refuse_stopped(const checkpoint *c, message *why) {
+  return refuse(why, EXIT_STOPPED, "%s: stopped while a large record was written", c->own_path);
+}
+
+/* Writes some bytes of the pieces. @returns as writev */
+static ssize_t write_some(int fd, const struct iovec *pieces, int count) {
+  struct iovec now[MOST_PIECES];
+  size_t left = WRITE_BYTES;
+  for (int i = 0; i < count; i++) {
+    now[i] = pieces[i];
+    now[i].iov_len = now[i].iov_len < left ? now[i].iov_len : left;
+    left -= now[i].iov_len;
+  }
+  return writev(fd, now, count);
+}
+
+/* @returns 0, EXIT_FILES or EXIT_STOPPED; then some of them may have been written */
+static int write_pieces(const checkpoint *c, struct iovec *pieces, int count, size_t size, message *why) {
+  for (size_t done = 0; done < size;) {
+    const ssize_t written = write_some(c->own_fd, pieces, count);
+    if (written < 0 && errno == EINTR)
+      continue;
+    if (written == 0)
+      errno = ENOSPC;
+    if (written <= 0)
+      return refuse_errno(c->own_path, "write", why);
+    advance(pieces, count, (size_t)written);
+    done += (size_t)written;
+    if (is_given_up(done))
+      return refuse_stopped(c, why);
+  }
+  return 0;
+}
+
 /* Appends all pieces to this rank's file, or none: after a failure the file is truncated to its last good record. If
  * that fails too, the file is closed, because records after an incomplete one are never read. */
 static int append_pieces(checkpoint *c, struct iovec *pieces, int count, message *why) {
-  size_t left = 0;
+  size_t size = 0;
   for (int i = 0; i < count; i++)
-    left += pieces[i].iov_len;
-  const size_t size = left;
-  while (left) {
-    const ssize_t written = writev(c->own_fd, pieces, count);
-    if (written < 0 && errno == EINTR)
-      continue;
-    if (written <= 0) {
-      if (written == 0)
-        errno = ENOSPC;
-      refuse_errno(c->own_path, "write", why);
-      if (ftruncate(c->own_fd, (off_t)c->own_size)) {
-        close(c->own_fd);
-        c->own_fd = -1;
-      }
-      return EXIT_FILES;
-    }
-    advance(pieces, count, (size_t)written);
-    left -= (size_t)written;
+    size += pieces[i].iov_len;
+  const int code = write_pieces(c, pieces, count, size, why);
+  if (code && ftruncate(c->own_fd, (off_t)c->own_size)) {
+    close(c->own_fd);
+    c->own_fd = -1;
   }
-  c->own_size += size;
-  return 0;
+  c->own_size += code ? 0 : size;
+  return code;
 }
 
 int checkpoint_begin(checkpoint *c, int rank, message *why) {
@@ -198,6 +231,20 @@ static int tail_pieces(const checkpoint *c, uint64_t count, const checkpoint_tai
   return 2 + (int)c->tails;
 }
 
+/* Bytes and digest of what follows the header. @returns false to give it up */
+static bool digest_pieces(const struct iovec *pieces, int count, record_header *header) {
+  for (int i = 0; i < count; i++)
+    for (size_t done = 0; done < pieces[i].iov_len;) {
+      const size_t left = pieces[i].iov_len - done, step = left < WRITE_BYTES ? left : WRITE_BYTES;
+      header->rows = digest_bytes(header->rows, (const char *)pieces[i].iov_base + done, step);
+      header->bytes += step;
+      done += step;
+      if (is_given_up(header->bytes))
+        return false;
+    }
+  return true;
+}
+
 int checkpoint_append(checkpoint *c, uint64_t first, uint64_t count, const void *rows, const checkpoint_tails *tails,
                       message *why) {
   const uint64_t tasks = c->identity.tasks;
@@ -207,16 +254,14 @@ int checkpoint_append(checkpoint *c, uint64_t first, uint64_t count, const void 
   if (c->own_fd < 0)
     return refuse(why, EXIT_FILES, "%s: not open for writing", c->folder);
   record_header header = {.magic = RECORD_MAGIC, .first = first, .count = count};
-  struct iovec pieces[4 + CHECKPOINT_MOST_TAILS];
+  struct iovec pieces[MOST_PIECES];
   uint64_t digest;
   pieces[0] = piece_of(&header, sizeof header);
   const int rows_at = c->tails ? 3 : 1;
   const int piece_count = 2 + tail_pieces(c, count, tails, &digest, pieces + 1, pieces + 4);
   pieces[rows_at] = piece_of(rows, count * c->identity.row_bytes);
-  for (int i = 1; i < piece_count; i++) {
-    header.bytes += pieces[i].iov_len;
-    header.rows = digest_bytes(header.rows, pieces[i].iov_base, pieces[i].iov_len);
-  }
+  if (!digest_pieces(pieces + 1, piece_count - 1, &header))
+    return refuse_stopped(c, why);
   header.check = record_header_check(&header);
   return append_pieces(c, pieces, piece_count, why);
 }

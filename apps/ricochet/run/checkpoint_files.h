@@ -106,6 +106,7 @@ struct checkpoint {
   uint64_t *counts;         /* [counted.count][tails] */
   uint64_t counts_room;     /* numbers */
   unsigned char *buffer;    /* [PART_BUFFER_BYTES] */
+  uint64_t unasked;         /* bytes read since stop_asked_after was asked */
 };
 
 uint64_t part_header_check(const part_header *header);
@@ -120,15 +121,18 @@ bool part_name_parse(const char *name, unsigned *generation, unsigned *rank);
 /** Bytes between a record's header and its rows. */
 uint64_t counts_bytes(const checkpoint *c, uint64_t count);
 
-/** Result of reading: verified; not verified (end of file, incomplete record, damage); or an error of the file system,
- *  given in `why`. */
-typedef enum finding { GOOD, BAD, UNREADABLE } finding;
+/** Result of reading: verified; not verified (end of file, incomplete record, damage); an error of the file system,
+ *  or a stop, given in `why`. */
+typedef enum finding { GOOD, BAD, UNREADABLE, STOPPED } finding;
+
+/** EXIT_FILES or EXIT_STOPPED; 0 for what is GOOD or BAD. */
+int finding_failure(finding found);
 
 /** Makes read_fd the file of this part. @returns 0 or EXIT_FILES. */
 int open_part(checkpoint *c, size_t number, message *why);
 
-/** Reads from the open part; a file that ends earlier is BAD. */
-finding read_part(const checkpoint *c, void *bytes, size_t size, uint64_t offset, message *why);
+/** Reads from the open part; a file that ends earlier is BAD. Asks for a stop now and then. */
+finding read_part(checkpoint *c, void *bytes, size_t size, uint64_t offset, message *why);
 
 /** Reads and verifies a record's header in the open part. */
 finding read_record_header(const checkpoint *c, uint64_t offset, record_header *header, message *why);
@@ -139,8 +143,8 @@ int refuse_record(const checkpoint *c, const index_range *range, message *why);
 /** Opens the record of a range and verifies it, unless it was verified last. */
 int select_record(checkpoint *c, const index_range *range, message *why);
 
-/** Reads bytes of the open part that have been verified. @returns 0 or EXIT_FILES. */
-int read_verified(const checkpoint *c, void *bytes, uint64_t size, uint64_t offset, message *why);
+/** Reads bytes of the open part that have been verified. @returns 0, EXIT_FILES or EXIT_STOPPED. */
+int read_verified(checkpoint *c, void *bytes, uint64_t size, uint64_t offset, message *why);
 
 /** Finds new parts in the folder, reads all parts on from the end of the last scan, and updates the index.
  *  @param rows  digest the rows too, not only the headers */

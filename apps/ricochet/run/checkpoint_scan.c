@@ -8,6 +8,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "stop.h"
+
+enum { READ_BYTES = 16 << 20 /* at a time */ };
+
 static void path_of(const checkpoint *c, size_t number, char *path) {
   part_path(c->folder, c->parts[number].generation, c->parts[number].rank, path);
 }
@@ -46,13 +50,31 @@ static int64_t read_at(int fd, void *bytes, size_t size, uint64_t offset) {
   return (int64_t)done;
 }
 
-finding read_part(const checkpoint *c, void *bytes, size_t size, uint64_t offset, message *why) {
+static finding read_piece(const checkpoint *c, void *bytes, size_t size, uint64_t offset, message *why) {
   const int64_t got = read_at(c->read_fd, bytes, size, offset);
   if (got < 0) {
     refuse_number(c, c->read_part, "read", why);
     return UNREADABLE;
   }
   return (uint64_t)got == size ? GOOD : BAD;
+}
+
+finding read_part(checkpoint *c, void *bytes, size_t size, uint64_t offset, message *why) {
+  finding found = GOOD;
+  for (size_t done = 0; found == GOOD && done < size;) {
+    const size_t step = size - done < READ_BYTES ? size - done : READ_BYTES;
+    found = read_piece(c, (char *)bytes + done, step, offset + done, why);
+    done += step;
+    if (found == GOOD && stop_asked_after(step, &c->unasked)) {
+      refuse(why, EXIT_STOPPED, "%s: stopped while it was read", c->folder);
+      found = STOPPED;
+    }
+  }
+  return found;
+}
+
+int finding_failure(finding found) {
+  return found == UNREADABLE ? EXIT_FILES : found == STOPPED ? EXIT_STOPPED : 0;
 }
 
 /* Without ragged tables the length is exactly that of the rows, with them at least that of rows and counts. */
@@ -62,7 +84,7 @@ static bool length_fits(const checkpoint *c, const record_header *header) {
 }
 
 finding read_record_header(const checkpoint *c, uint64_t offset, record_header *header, message *why) {
-  const finding found = read_part(c, header, sizeof *header, offset, why);
+  const finding found = read_piece(c, header, sizeof *header, offset, why);
   if (found != GOOD)
     return found;
   const uint64_t tasks = c->identity.tasks;
@@ -72,7 +94,7 @@ finding read_record_header(const checkpoint *c, uint64_t offset, record_header *
   return good ? GOOD : BAD;
 }
 
-static finding verify_rows(const checkpoint *c, uint64_t offset, const record_header *header, message *why) {
+static finding verify_rows(checkpoint *c, uint64_t offset, const record_header *header, message *why) {
   uint64_t digest = 0;
   offset += sizeof *header;
   for (uint64_t left = header->bytes; left;) {
@@ -107,9 +129,9 @@ static int compare_identity(const char *path, const checkpoint_identity *found, 
 /* `scanned` stays 0 while the header is incomplete. */
 static int scan_part_header(checkpoint *c, size_t number, message *why) {
   part_header header;
-  const finding found = read_part(c, &header, sizeof header, 0, why);
+  const finding found = read_piece(c, &header, sizeof header, 0, why);
   if (found != GOOD)
-    return found == UNREADABLE ? EXIT_FILES : 0;
+    return finding_failure(found);
   if (header.magic != PART_MAGIC || header.check != part_header_check(&header))
     return 0;
   char path[PATH_MAX];
@@ -160,7 +182,7 @@ static int scan_part(checkpoint *c, size_t number, bool rows, message *why) {
       return code;
     p->scanned += sizeof header + header.bytes;
   }
-  return found == UNREADABLE ? EXIT_FILES : 0;
+  return finding_failure(found);
 }
 
 static int compare_parts(const void *a, const void *b) {
@@ -231,19 +253,17 @@ int select_record(checkpoint *c, const index_range *range, message *why) {
   finding found = read_record_header(c, range->offset, &c->verified, why);
   if (found == GOOD)
     found = verify_rows(c, range->offset, &c->verified, why);
-  if (found == UNREADABLE)
-    return EXIT_FILES;
-  if (found == BAD)
-    return refuse_record(c, range, why);
+  if (found != GOOD)
+    return found == BAD ? refuse_record(c, range, why) : finding_failure(found);
   c->verified_part = range->part;
   c->verified_offset = range->offset;
   return 0;
 }
 
-int read_verified(const checkpoint *c, void *bytes, uint64_t size, uint64_t offset, message *why) {
+int read_verified(checkpoint *c, void *bytes, uint64_t size, uint64_t offset, message *why) {
   const finding found = read_part(c, bytes, size, offset, why);
   if (found != BAD)
-    return found == GOOD ? 0 : EXIT_FILES;
+    return finding_failure(found);
   errno = EIO; /* it was longer when it was verified */
   return refuse_number(c, c->read_part, "read", why);
 }

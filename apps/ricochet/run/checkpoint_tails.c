@@ -29,8 +29,8 @@ static int select_counts(checkpoint *c, const index_range *range, message *why) 
     found = read_part(c, c->counts, numbers * sizeof *c->counts, at, why);
   if (!code && found == GOOD)
     found = read_part(c, &digest, sizeof digest, at + numbers * sizeof *c->counts, why);
-  if (code || found == UNREADABLE)
-    return code ? code : EXIT_FILES;
+  if (code || finding_failure(found))
+    return code ? code : finding_failure(found);
   if (found == BAD || digest != digest_bytes(0, c->counts, numbers * sizeof *c->counts))
     return refuse_record(c, range, why);
   c->counts_part = range->part;

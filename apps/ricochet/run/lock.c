@@ -125,6 +125,8 @@ static int wait_for_whole(lock *l, double wait_seconds, message *why) {
       return 0;
     if (result == IMPOSSIBLE)
       return EXIT_FILES;
+    if (stop_asked() != STOP_NONE)
+      return refuse(why, EXIT_STOPPED, "%s: stopped while it was held by %s", l->path, holder);
     const double waited = clock_seconds() - began;
     if (!(waited < wait_seconds))
       return refuse(why, EXIT_FILES, "%s: held by %s; waited %.1f s", l->path, holder, waited);

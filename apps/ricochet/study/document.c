@@ -1,9 +1,12 @@
 #include "document.h"
 
 #include <errno.h>
+#include <fcntl.h>
+#include <poll.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 yaml_node_t *document_node(const document *d, int node) {
   return d->tree.nodes.start + (node - 1);
@@ -186,16 +189,49 @@ void document_destroy(document **d) {
 
 /* --- origins of texts --- */
 
+/* Waits for the next bytes of a file, which a pipe may never have. @returns 0, -1 with errno, or 1 to stop */
+static int wait_for_bytes(int handle, ric_poll stop) {
+  enum { MILLISECONDS = 100 };
+  struct pollfd wanted = {.fd = handle, .events = POLLIN};
+  for (;;) {
+    const int ready = poll(&wanted, 1, MILLISECONDS); /* a signal ends it */
+    if (ready > 0)
+      return 0;
+    if (ready < 0 && errno != EINTR)
+      return -1;
+    if (ric_poll_stops(stop))
+      return 1;
+  }
+}
+
+/* Reads up to the end of the file, or until there is no room. @returns as wait_for_bytes */
+static int read_bytes(int handle, ric_poll stop, char *bytes, size_t room, size_t *length) {
+  ssize_t got = 1;
+  *length = 0;
+  while (got != 0 && *length < room) {
+    const int waited = wait_for_bytes(handle, stop);
+    if (waited != 0)
+      return waited;
+    got = read(handle, bytes + *length, room - *length);
+    if (got < 0 && errno != EAGAIN && errno != EINTR)
+      return -1;
+    *length += got > 0 ? (size_t)got : 0;
+  }
+  return 0;
+}
+
 /* Reads at most one byte more than the limit, which detects files that are too large. The size cannot be asked for
  * beforehand: a study may come through a pipe. */
-static int read_stream(const char *path, FILE *file, char **text, size_t *length, message *why) {
+static int read_text(const char *path, int handle, ric_poll stop, char **text, size_t *length, message *why) {
   char *bytes = malloc(STUDY_MAX_BYTES + 1);
   if (!bytes)
     return refuse(why, EXIT_RUN, "%s: out of memory", path);
-  *length = fread(bytes, 1, STUDY_MAX_BYTES + 1, file);
+  const int status = read_bytes(handle, stop, bytes, STUDY_MAX_BYTES + 1, length);
   int code = 0;
-  if (ferror(file))
+  if (status < 0)
     code = refuse(why, EXIT_FILES, "%s: cannot be read: %s", path, strerror(errno));
+  else if (status > 0)
+    code = refuse(why, EXIT_STOPPED, "%s: stopped before it was read", path);
   else if (*length > STUDY_MAX_BYTES)
     code = refuse(why, EXIT_USAGE, "%s: larger than %d MiB, the limit for a study", path, STUDY_MAX_BYTES >> 20);
   if (code) {
@@ -208,12 +244,12 @@ static int read_stream(const char *path, FILE *file, char **text, size_t *length
   return 0;
 }
 
-int study_read_file(const char *path, char **text, size_t *length, message *why) {
-  FILE *file = fopen(path, "rb");
-  if (!file)
+int study_read_file(const char *path, ric_poll stop, char **text, size_t *length, message *why) {
+  const int handle = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC); /* a named pipe without a writer opens, too */
+  if (handle < 0)
     return refuse(why, EXIT_FILES, "%s: cannot be opened: %s", path, strerror(errno));
-  const int code = read_stream(path, file, text, length, why);
-  fclose(file);
+  const int code = read_text(path, handle, stop, text, length, why);
+  close(handle); /* only read */
   return code;
 }
 

@@ -10,6 +10,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include <ricochet/status.h>
+
 #include "../base/message.h"
 #include "schema.h"
 
@@ -36,10 +38,12 @@ typedef struct study_sweep {
   const double *values; /* [points] */
 } study_sweep;
 
-/** Reads a whole file into memory.
+/** Reads a whole file, or pipe, into memory.
+ *  @param stop  asked while there are no bytes to read
  *  @param text  set to malloc'd bytes with a terminating 0; the caller frees
- *  @returns 0, EXIT_FILES when it cannot be read, EXIT_USAGE when it is larger than STUDY_MAX_BYTES. */
-int study_read_file(const char *path, char **text, size_t *length, message *why);
+ *  @returns 0, EXIT_FILES when it cannot be read, EXIT_USAGE when it is larger than STUDY_MAX_BYTES,
+ *           EXIT_STOPPED. */
+int study_read_file(const char *path, ric_poll stop, char **text, size_t *length, message *why);
 
 /** A value that the program assigns before the study is checked; it replaces that of the study. */
 typedef struct study_assignment {

@@ -113,7 +113,7 @@ RIC_API ric_map_lanes ric_map_lanes_widest(void);
  * few times on a trial map, a few milliseconds in total.
  *  @param exponents  number of Lyapunov exponents, at most the size
  *  @param now  the caller's clock in seconds, with any origin; NULL: the widest, without a trial
- *  @returns the narrowest without memory for a trial */
+ *  @returns the narrowest without memory for a trial; the widest if a trial would take long */
 RIC_API ric_map_lanes ric_map_lanes_fastest(size_t size, size_t exponents, double (*now)(void *user), void *user);
 
 typedef struct ric_map_runner ric_map_runner;

@@ -2,6 +2,7 @@
 
 #include "diagram.h"
 #include "kind/family/family_check.h"
+#include "kind/fill.h"
 
 #define SOURCE .source = "[FN97] section 6"
 #define MAP    .source = "[FN97] (5.11)"
@@ -126,14 +127,16 @@ void diagram_lay_out(const study *s, const study_values *v, table *rows) {
   table_lay_out(rows);
 }
 
-diagram_row diagram_begin_row(const table *rows, unsigned char *row, ric_attractor *a) {
-  diagram_row values = {0};
-  memset(row, 0, rows->row_bytes);
-  row_load(rows, row, &values);
-  a->values = values.values;
-  a->states = values.state;
-  a->lowest = values.lowest;
-  return values;
+ric_status diagram_begin_row(const table *layout, ric_poll stop, unsigned char *bytes, diagram_row *row,
+                             ric_attractor *a) {
+  *row = (diagram_row){0};
+  if (!fill_zero(bytes, layout->row_bytes, stop))
+    return RIC_ESTOPPED;
+  row_load(layout, bytes, row);
+  a->values = row->values;
+  a->states = row->state;
+  a->lowest = row->lowest;
+  return RIC_OK;
 }
 
 void diagram_put_row(diagram_row *row, const ric_attractor *a) {

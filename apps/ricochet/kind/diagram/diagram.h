@@ -155,8 +155,10 @@ bool diagram_wants(const study *s, const document *d, study_key key);
 int diagram_check(const study *s, const document *d, message *why);
 int basin_check(const study *s, const document *d, message *why);
 
-/** A row of zeros, and the attractor that will be stored in it: its arrays are those of the row, if it has them. */
-diagram_row diagram_begin_row(const table *rows, unsigned char *row, ric_attractor *attractor);
+/** A row of zeros, and the attractor that will be stored in it: its arrays are those of the row, if it has them.
+ *  @returns RIC_OK or RIC_ESTOPPED */
+ric_status diagram_begin_row(const table *layout, ric_poll stop, unsigned char *bytes, diagram_row *row,
+                             ric_attractor *attractor);
 
 /** Stores the attractor in the row, which borrows its arrays. */
 void diagram_put_row(diagram_row *row, const ric_attractor *attractor);

@@ -1,4 +1,5 @@
 #include "diagram.h"
+#include "kind/fill.h"
 #include "kind/keys.h"
 
 #include <math.h>
@@ -171,21 +172,16 @@ void iterated_take(iterated *it, size_t slot, double *z) {
 
 /* --- a run -------------------------------------------------------------------------------------------------------- */
 
-/* The outcome of a run that the library refuses is `failed`. */
-static void fail(const iterated *it, ric_attractor *a, const ric_error *error) {
+/* The outcome of a run that the library refuses is `failed`. @returns RIC_OK or RIC_ESTOPPED */
+static ric_status fail(const iterated *it, ric_attractor *a, const ric_error *error) {
   const ric_attractor_options *o = it->maps ? &it->maps[0].options : &it->options;
   a->kind = RIC_ATTRACTOR_FAILED;
   a->period = a->iterates = 0;
   a->impacts = NAN;
-  for (size_t i = 0; a->values && i < o->keep; i++)
-    a->values[i] = NAN;
-  for (size_t i = 0; a->states && i < o->keep * it->size; i++)
-    a->states[i] = NAN;
-  for (size_t i = 0; i < o->exponents; i++)
-    a->exponents[i] = NAN;
-  for (size_t i = 0; a->lowest && i < it->size; i++)
-    a->lowest[i] = NAN;
   snprintf(a->reason, sizeof a->reason, "%.*s", (int)sizeof a->reason - 1, error->message);
+  const bool filled = fill_nan(a->values, o->keep, it->poll) && fill_nan(a->states, o->keep * it->size, it->poll) &&
+                      fill_nan(a->exponents, o->exponents, it->poll) && fill_nan(a->lowest, it->size, it->poll);
+  return filled ? RIC_OK : RIC_ESTOPPED;
 }
 
 static bool is_same(const ric_attractor_options *a, const ric_attractor_options *b) {
@@ -215,15 +211,13 @@ static ric_status run_alike(iterated *it, size_t first, size_t count, ric_attrac
     alike++;
   }
   *done = alike > 0 ? alike : 1;
-  if (alike == 0) {
-    fail(it, &attractors[first], &it->maps[first].refused);
-    return RIC_OK;
-  }
+  if (alike == 0)
+    return fail(it, &attractors[first], &it->maps[first].refused);
   ric_status status = prepare(it, &it->maps[first].options, &error);
   if (status == RIC_OK)
     status = ric_map_runner_run(it->runner, alike, maps, d, attractors + first, &error);
   for (size_t i = 0; i < alike && status != RIC_OK && status != RIC_ESTOPPED; i++)
-    fail(it, &attractors[first + i], &error);
+    RIC_TRY(fail(it, &attractors[first + i], &error));
   return status == RIC_ESTOPPED ? status : RIC_OK;
 }
 
@@ -258,7 +252,5 @@ ric_status iterated_run(iterated *it, size_t count, ric_attractor *attractors) {
     error = it->refused;
   if (status == RIC_ESTOPPED)
     return status;
-  if (status != RIC_OK)
-    fail(it, attractors, &error);
-  return RIC_OK;
+  return status == RIC_OK ? RIC_OK : fail(it, attractors, &error);
 }

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "kind/fill.h"
 #include "kind/machine.h"
 
 struct worker {
@@ -87,11 +88,10 @@ static int diagram_open(const study *s, ric_poll poll, worker **out, message *wh
 
 /* --- a motion beyond grazing compared with the return map -------------------------------------------------------- */
 
-/* No comparison: all its numbers are NaN. */
-static void put_nothing(const iterated *it, diagram_row *row) {
+/* No comparison: all its numbers are NaN. @returns RIC_OK or RIC_ESTOPPED */
+static ric_status put_nothing(const iterated *it, diagram_row *row) {
   row->parameter = row->d = row->map_impacts = row->map_lyapunov = row->distance = NAN;
-  for (size_t i = 0; row->map_values && i < it->options.keep; i++)
-    row->map_values[i] = NAN;
+  return fill_nan(row->map_values, it->options.keep, it->poll) ? RIC_OK : RIC_ESTOPPED;
 }
 
 /* Both sets are copied, because ric_attractor_distance sorts them. */
@@ -136,7 +136,7 @@ static ric_status put_comparison(iterated *it, diagram_row *row, ric_error *erro
   if (status == RIC_ESTOPPED)
     return status;
   if (status != RIC_OK) {
-    put_nothing(it, row);
+    RIC_TRY(put_nothing(it, row));
     if (!row->reason[0]) /* a reason of the motion takes precedence */
       row->reason = error->message;
   }
@@ -145,13 +145,13 @@ static ric_status put_comparison(iterated *it, diagram_row *row, ric_error *erro
 
 /* --- tasks -------------------------------------------------------------------------------------------------------- */
 
-/* Reads a task into a slot, with its own start. */
-static void read_task(worker *w, const table *layout, uint64_t task, size_t slot, unsigned char *row) {
+/* Reads a task into a slot, with its own start. @returns RIC_OK or RIC_ESTOPPED */
+static ric_status read_task(worker *w, const table *layout, uint64_t task, size_t slot, unsigned char *row) {
   double *start = w->starts + slot * w->it.size;
   study_values_at(w->it.values, task);
   iterated_take(&w->it, slot, start);
   w->attractors[slot] = (ric_attractor){.z = start, .exponents = w->found + slot * w->exponents};
-  w->rows[slot] = diagram_begin_row(layout, row, &w->attractors[slot]);
+  return diagram_begin_row(layout, w->it.poll, row, &w->rows[slot], &w->attractors[slot]);
 }
 
 /* Stores a finished task in its row. */
@@ -167,7 +167,7 @@ static ric_status put(worker *w, const table *rows, size_t slot, unsigned char *
 /* Independent tasks. */
 static ric_status run_side_by_side(worker *w, const table *rows, task_range tasks, unsigned char *bytes) {
   for (uint64_t i = 0; i < tasks.count; i++)
-    read_task(w, rows, tasks.first + i, i, bytes + i * rows->row_bytes);
+    RIC_TRY(read_task(w, rows, tasks.first + i, i, bytes + i * rows->row_bytes));
   RIC_TRY(iterated_run(&w->it, tasks.count, w->attractors));
   for (uint64_t i = 0; i < tasks.count; i++)
     RIC_TRY(put(w, rows, i, bytes + i * rows->row_bytes));
@@ -180,7 +180,7 @@ static ric_status run_in_turn(worker *w, const table *rows, task_range tasks, un
   bool goes_on = false;
   for (uint64_t i = 0; i < tasks.count; i++) {
     unsigned char *row = bytes + i * rows->row_bytes;
-    read_task(w, rows, tasks.first + i, 0, row);
+    RIC_TRY(read_task(w, rows, tasks.first + i, 0, row));
     if (goes_on)
       memcpy(w->starts, w->before, start_bytes);
     RIC_TRY(iterated_run(&w->it, 1, w->attractors));

@@ -8,6 +8,7 @@
 #include "trajectory.h"
 #include "model/chain.h"
 #include "model/lattice_model.h"
+#include "kind/fill.h"
 #include "kind/machine.h"
 #include "kind/pattern.h"
 #include "base/table.h"
@@ -311,11 +312,6 @@ static ric_status move(worker *w, observation *seen, ric_run *did, verdict *foun
 
 /* --- its row --- */
 
-static void fill_nan(double *numbers, size_t count) {
-  for (size_t i = 0; numbers && i < count; i++)
-    numbers[i] = NAN;
-}
-
 static void fill_times(worker *w) {
   const double duration = value_number(w->values, KEY_TIME_DURATION, 0);
   for (size_t i = 0; i + 1 < w->samples; i++)
@@ -323,24 +319,26 @@ static void fill_times(worker *w) {
   w->times[w->samples - 1] = duration;
 }
 
-/* The sampler writes states into the row itself. */
-static observation begin_row(worker *w, const kind_plan *plan, unsigned char *row, records *tails) {
+/* The sampler writes states into the row itself. @returns 0, or -1 if stopped */
+static int begin_row(worker *w, const kind_plan *plan, unsigned char *row, records *tails, observation *seen) {
   const size_t n = w->model.lattice.particles;
   trajectory_row found = {0};
-  memset(row, 0, plan->rows.row_bytes);
+  if (!fill_zero(row, plan->rows.row_bytes, w->poll))
+    return -1;
   row_load(&plan->rows, row, &found);
   fill_times(w);
-  fill_nan(found.q, w->samples * n);
-  fill_nan(found.v, w->samples * n);
-  fill_nan(found.lyapunov, 2 * n);
+  if (!fill_nan(found.q, w->samples * n, w->poll) || !fill_nan(found.v, w->samples * n, w->poll) ||
+      !fill_nan(found.lyapunov, 2 * n, w->poll))
+    return -1;
   found.t = w->times;
-  return (observation){
+  *seen = (observation){
       .worker = w,
       .plan = plan,
       .tails = tails,
       .row = found,
       .converged = {.layout = &plan->tails[TAIL_LYAPUNOV].records, .to = &tails[TAIL_LYAPUNOV]},
       .sampler = {.times = w->times, .count = w->samples, .coordinates = n, .speeds = n, .q = found.q, .u = found.v}};
+  return 0;
 }
 
 static void finish_row(observation *seen, const verdict *found, const ric_run *did, unsigned char *row) {
@@ -360,8 +358,8 @@ static int trajectory_evaluate(worker *w, const kind_plan *plan, task_range task
   verdict found = {.outcome = RIC_RUN_COMPLETED};
   ric_run did = {.energy_start = NAN, .energy_end = NAN, .impact_loss = NAN};
   study_values_at(w->values, tasks.first);
-  observation seen = begin_row(w, plan, row, tails);
-  if (read_start(w, &found) == RIC_ESTOPPED)
+  observation seen;
+  if (begin_row(w, plan, row, tails, &seen) != 0 || read_start(w, &found) == RIC_ESTOPPED)
     return -1;
   if (found.outcome != TRAJECTORY_NO_ORBIT && move(w, &seen, &did, &found) == RIC_ESTOPPED)
     return -1;
