@@ -61,6 +61,15 @@ out:
 
 /* --- names --- */
 
+static uint64_t file_bytes_of(hid_t object) {
+  hsize_t bytes = 0;
+  const hid_t file = H5Iget_file_id(object);
+  if (file < 0 || H5Fget_filesize(file, &bytes) < 0)
+    bytes = 0;
+  (void)H5Fclose(file);
+  return bytes;
+}
+
 static bool has_controls(const char *name) {
   char shown[4096];
   escape_text(name, shown, sizeof shown);
@@ -85,15 +94,25 @@ static int link_name(const file_place *at, hid_t group, hsize_t i, char **name) 
   return code;
 }
 
+/* Opens what a link leads to: an object of this file, which no result refers to in any other way. */
+static int open_linked(const file_place *at, hid_t group, const char *name, hid_t *object) {
+  H5L_info_t link;
+  if (H5Lget_info(group, name, &link, H5P_DEFAULT) < 0)
+    return hdf5_refuse(at, "open %s", name);
+  if (link.type != H5L_TYPE_HARD)
+    return refuse(at->why, EXIT_FILES, "%s: %s is a link to somewhere else, expected an object", at->path, name);
+  *object = H5Oopen(group, name, H5P_DEFAULT);
+  return *object < 0 ? hdf5_refuse(at, "open %s", name) : 0;
+}
+
 /* Appends the i-th link when it leads to an object of the type asked for. */
 static int list_link(const file_place *at, hid_t group, hsize_t i, H5I_type_t type, reader_names *names) {
   char *name = NULL;
+  hid_t object = H5I_INVALID_HID;
   int code = link_name(at, group, i, &name);
   if (code)
     return code;
-  hid_t object = H5Oopen(group, name, H5P_DEFAULT);
-  if (object < 0)
-    code = hdf5_refuse(at, "open %s", name);
+  code = open_linked(at, group, name, &object);
   if (object >= 0 && H5Iget_type(object) == type)
     names->at[names->count++] = name;
   else
@@ -107,6 +126,8 @@ int reader_list(const file_place *at, reader_handle group, bool groups, reader_n
   *names = (reader_names){0};
   if (H5Gget_info(group, &info) < 0)
     return hdf5_refuse(at, "list it");
+  if (info.nlinks > file_bytes_of(group))
+    return refuse(at->why, EXIT_FILES, "%s: damaged: a group claims more objects than the file can hold", at->path);
   names->at = calloc((size_t)info.nlinks + 1, sizeof *names->at);
   if (!names->at)
     return refuse(at->why, EXIT_RUN, "%s: out of memory", at->path);
@@ -195,24 +216,26 @@ out:
   return hdf5_close(at, type, code);
 }
 
-static uint64_t file_bytes_of(hid_t set) {
-  hsize_t bytes = 0;
-  const hid_t file = H5Iget_file_id(set);
-  if (file < 0 || H5Fget_filesize(file, &bytes) < 0)
-    bytes = 0;
-  (void)H5Fclose(file);
-  return bytes;
+/* Values can also be in other files, which HDF5 would open. */
+static int check_inside(const file_place *at, hid_t set, const char *name) {
+  int code = 0;
+  hid_t list = H5I_INVALID_HID;
+  HDF5_TRY(at, list = H5Dget_create_plist(set), "read %s", name);
+  if (H5Pget_layout(list) == H5D_VIRTUAL || H5Pget_external_count(list) > 0)
+    code = refuse(at->why, EXIT_FILES, "%s: the values of %s are in another file", at->path, name);
+out:
+  return hdf5_close(at, list, code);
 }
 
-int reader_check_extent(const file_place *at, reader_handle set, const char *name, int rank, const uint64_t *shape,
-                        size_t value_bytes) {
+int reader_check_storage(const file_place *at, reader_handle set, const char *name, int rank, const uint64_t *shape,
+                         size_t value_bytes) {
   enum { TIGHTEST = 1032 };
   uint64_t bytes = value_bytes, most;
   bool fits = !__builtin_mul_overflow(file_bytes_of(set), TIGHTEST, &most);
   for (int i = 0; i < rank; i++)
     fits = fits && (shape[i] == 0 || !__builtin_mul_overflow(bytes, shape[i], &bytes));
   if (fits && bytes <= most)
-    return 0;
+    return check_inside(at, set, name);
   return refuse(at->why, EXIT_FILES, "%s: damaged: %s claims more values than the file can hold", at->path, name);
 }
 
@@ -224,7 +247,7 @@ static int read_shape(const file_place *at, reader_set *s) {
   HDF5_TRY(at, s->rank = H5Sget_simple_extent_dims(space, shape, NULL), "read the shape of %s", s->name);
   for (int i = 0; i < s->rank; i++)
     s->shape[i] = shape[i];
-  code = reader_check_extent(at, s->id, s->name, s->rank, s->shape, s->value_bytes);
+  code = reader_check_storage(at, s->id, s->name, s->rank, s->shape, s->value_bytes);
 out:
   return hdf5_close(at, space, code);
 }

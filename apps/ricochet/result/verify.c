@@ -304,7 +304,7 @@ static int check_set(const verifier *v, const char *name) {
   HDF5_TRY(v->at, s.rank = H5Sget_simple_extent_dims(s.space, s.shape, NULL), "read %s", name);
   for (int i = 0; i < s.rank; i++)
     shape[i] = s.shape[i];
-  code = reader_check_extent(v->at, s.set, name, s.rank, shape, H5Tget_size(s.type));
+  code = reader_check_storage(v->at, s.set, name, s.rank, shape, H5Tget_size(s.type));
   if (!code)
     code = check_storage(v, name, &s);
   if (!code)
