@@ -12,18 +12,21 @@ STUDIES = ("table", "bouncing_chain", "impact_branch", "grazing_regimes", "basin
 TRIALS = 20  # of each
 
 
-def forge(path, data, seed):
+def forge(name, data, seed):
     def run(ricochet, folder):
-        found = [look(ricochet, folder, *mutant) for mutant in islice(mutants(data, f"{path.stem} {seed}"), 25)]
+        found = [look(ricochet, folder, *mutant) for mutant in islice(mutants(data, f"{name} {seed}"), 25)]
         return f"{sum(found)} of {3 * len(found)} readings crashed in HDF5"
 
     return run
 
 
+def result_of(ricochet, name):
+    path, folder = ricochet.studies / f"{name}.yaml", ricochet.new_folder()
+    ricochet.run(path, *coarser(path), cwd=folder).expect_done()
+    return (folder / f"{name}.h5").read_bytes()
+
+
 def trials(ricochet):
-    for name in STUDIES:
-        path, folder = ricochet.studies / f"{name}.yaml", ricochet.new_folder()
-        ricochet.run(path, *coarser(path), cwd=folder).expect_done()
-        data = (folder / f"{name}.h5").read_bytes()
-        for seed in range(TRIALS):
-            yield Trial(f"{name} {seed}", forge(path, data, seed), limit=180)
+    results = {name: result_of(ricochet, name) for name in STUDIES}
+    return [Trial(f"{name} {seed}", forge(name, data, seed), limit=180)
+            for seed in range(TRIALS) for name, data in results.items()]  # fmt: skip
