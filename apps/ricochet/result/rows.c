@@ -118,7 +118,7 @@ int rows_write(const plan *p, const chunk_places *places, const file_place *at, 
     return refuse_errno(at->path, "open it", at->why);
   int code = 0;
   written->record_bytes = sizeof(uint64_t);
-  for (size_t i = 0; !code && i < p->table_count; i++) {
+  for (size_t i = 0; !code && i < p->stored_count; i++) {
     block b;
     code = block_allocate(&b, at, hooks, &p->tables[i]);
     for (uint64_t k = rank; !code && k * b.height < b.from->rows; k += ranks)
@@ -195,7 +195,7 @@ int rows_check(const plan *p, const file_place *at, const result_hooks *hooks, c
   uint64_t next = 0;
   hid_t file = H5I_INVALID_HID;
   HDF5_TRY(at, file = H5Fopen(p->partial, H5F_ACC_RDONLY, H5P_DEFAULT), "open it");
-  for (size_t i = 0; !code && i < p->table_count; i++) {
+  for (size_t i = 0; !code && i < p->stored_count; i++) {
     block b;
     code = block_allocate(&b, at, hooks, &p->tables[i]);
     if (!code)

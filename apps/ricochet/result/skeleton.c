@@ -410,7 +410,7 @@ static int lay_out_chunks(const plan *p, const file_place *at, const skeleton_im
   hid_t access = H5I_INVALID_HID, file = H5I_INVALID_HID;
   HDF5_TRY(at, access = skeleton_access(), "lay it out");
   HDF5_TRY(at, file = H5Fopen(p->partial, H5F_ACC_RDWR, access), "lay it out");
-  for (size_t i = 0; i < p->table_count; i++)
+  for (size_t i = 0; i < p->stored_count; i++)
     for (size_t k = 0; !code && k < p->tables[i].layout->column_count; k++, set++)
       if (p->tables[i].rows > 0 && column_values(&p->tables[i].layout->columns[k]) > 0)
         code = lay_out_set(at, file, &p->tables[i], &p->tables[i].layout->columns[k], set, places);
