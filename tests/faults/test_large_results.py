@@ -1,5 +1,5 @@
-"""The memory of a rank stays bounded by its chunk, however large the result: every kind runs in an address space of which
-ten times less is left to it than its result has bytes, fresh and over an old one."""
+"""The memory of a rank stays bounded by its chunk, however large the result: every kind runs in an address space that
+leaves it a tenth of the bytes of its result, fresh and over an old one."""
 
 import re
 import resource
@@ -9,8 +9,10 @@ from program import names, write
 
 # What the program needs for a study of one task, and what a run has besides, in MB.
 ALONE, RANK, ROOM = 44, 252, 28
-DRIVEN = "model: {type: chain, particles: %d, ends: free, gamma: 0, floor: null, wall: 1, restitution: 0.8, damping: %g,\n"
-DRIVEN += "        force: 0.05, frequency: 1}\norbit: {motion: forced}\n"
+DRIVEN = """model: {type: chain, particles: %d, ends: free, gamma: 0, floor: null, wall: 1, restitution: 0.8, damping: %g,
+        force: 0.05, frequency: 1}
+orbit: {motion: forced}
+"""
 STUDIES = {
     "orbits": """model: {type: chain, particles: 4000, ends: periodic, gamma: 0.1, floor: -1}
 orbit: {period: 1.5 pi, at_start: [7]}

@@ -31,18 +31,21 @@ def result(ricochet, folder):
 
 def put(owner, name, text):
     del owner.attrs[name]
-    owner.attrs[name] = np.bytes_(text.encode())
+    owner.attrs[name] = np.bytes_(text if isinstance(text, bytes) else text.encode())
 
 
 def test_control_characters_in_texts_are_shown_as_escapes(ricochet, folder, result):
     with h5py.File(result, "r+") as file:
         put(file, "title", "a \x1b]0;window title\x07 \x1b[2J and \u009b2J")
         put(file, "compiler", "gcc\x1b[31m")
+        # Latin-1, a character that is cut, a surrogate, and one of four bytes
+        put(file, "libraries", "fft\u00e9 ".encode() + b"\x9b2J \xc3 \xed\xa0\x80 \xf0\x9f\x98\x80")
         put(file["orbits/energy"], "long_name", "energy\x1b[31m")
         put(file["orbits/energy"], "units", "\r\x1b[1A")
     shown = ricochet("show", result, cwd=folder).expect(DONE).out
     assert all(ord(letter) >= 0x20 or letter == "\n" for letter in shown) and "\u009b" not in shown
-    for word in ("a \\x1b]0;window title\\x07 \\x1b[2J and \\x9b2J", "gcc\\x1b[31m", "energy\\x1b[31m", "\\x0d\\x1b[1A"):
+    for word in ("a \\x1b]0;window title\\x07 \\x1b[2J and \\x9b2J", "gcc\\x1b[31m", "energy\\x1b[31m", "\\x0d\\x1b[1A",
+                 "fft\u00e9 \\x9b2J \\xc3 \\xed\\xa0\\x80 \U0001f600"):  # fmt: skip
         assert word in shown, shown
 
 
