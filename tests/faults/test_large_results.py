@@ -9,8 +9,8 @@ from program import names, write
 
 # What the program needs for a study of one task, and what a run has besides, in MB.
 ALONE, RANK, ROOM = 44, 252, 28
-DRIVEN = """model: {type: chain, particles: %d, ends: free, gamma: 0, floor: null, wall: 1, restitution: 0.8, damping: %g,
-        force: 0.05, frequency: 1}
+DRIVEN = """model: {type: chain, particles: %d, ends: free, gamma: 0, floor: null, wall: 1, restitution: 0.8,
+        damping: %g, force: 0.05, frequency: 1}
 orbit: {motion: forced}
 """
 STUDIES = {
@@ -74,7 +74,7 @@ def test_the_memory_of_a_rank_does_not_grow_with_the_result(ricochet, place, kin
 
 def test_memory_is_examined_for_every_kind(ricochet, folder):
     printed = ricochet("--help", cwd=folder).expect_done().out
-    kinds = re.search(r"^Kinds of study.*\n((?:  .*\n)+)", printed, re.M).group(1)
+    kinds = re.search(r"^Kinds of study.*\n((?:  .*\n)+)", printed, re.MULTILINE).group(1)
     assert [line.split()[0] for line in kinds.splitlines()] == list(STUDIES)
 
 
