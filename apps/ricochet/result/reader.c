@@ -16,8 +16,7 @@
 static int check_creator(const file_place *at, hid_t file) {
   char creator[64] = "";
   int64_t version = 0;
-  htri_t marked = H5Aexists(file, "creator");
-  int code = marked > 0 ? attribute_text_into(at, file, "creator", creator, sizeof creator) : 0;
+  int code = attribute_text_if_there(at, file, "creator", creator, sizeof creator);
   if (code)
     return code;
   if (strcmp(creator, RESULT_CREATOR) != 0)
@@ -41,7 +40,9 @@ int reader_open(const file_place *at, const char *path, reader_handle *file) {
   struct stat about;
   htri_t known;
   *file = H5I_INVALID_HID;
-  hdf5_quiet();
+  code = hdf5_start(at);
+  if (code)
+    return code;
   if (stat(path, &about) != 0)
     return refuse(at->why, EXIT_FILES, "%s: cannot open it: %s", at->path, strerror(errno));
   if (!S_ISREG(about.st_mode))
@@ -229,10 +230,6 @@ out:
   return hdf5_close(at, space, code);
 }
 
-static int read_name(const file_place *at, hid_t set, const char *attribute, char *name, size_t size) {
-  return H5Aexists(set, attribute) > 0 ? attribute_text_into(at, set, attribute, name, size) : 0;
-}
-
 static int open_set(const file_place *at, hid_t group, reader_set *s) {
   s->id = H5Dopen2(group, s->name, H5P_DEFAULT);
   if (s->id < 0)
@@ -247,8 +244,8 @@ static int open_set(const file_place *at, hid_t group, reader_set *s) {
   if (!code)
     code = attribute_text_into(at, s->id, "long_name", s->long_name, sizeof s->long_name);
   if (!code)
-    code = read_name(at, s->id, "parameter", s->parameter, sizeof s->parameter);
-  return code ? code : read_name(at, s->id, "observed", s->observed, sizeof s->observed);
+    code = attribute_text_if_there(at, s->id, "parameter", s->parameter, sizeof s->parameter);
+  return code ? code : attribute_text_if_there(at, s->id, "observed", s->observed, sizeof s->observed);
 }
 
 static int open_sets(const file_place *at, hid_t group, reader_group *g) {

@@ -145,7 +145,11 @@ static int heap_check(const file_place *at, hid_t file, const char *path) {
   HDF5_TRY(at, space = H5Aget_space(attribute), "read %s", attribute_name);
   HDF5_TRY(at, values = H5Sget_simple_extent_npoints(space), "read %s", attribute_name);
   heaps = calloc((size_t)values / 3 + 1, sizeof *heaps);
-  if (!heaps || values % 3 != 0) {
+  if (!heaps) {
+    code = refuse(at->why, EXIT_RUN, "%s: out of memory", at->path);
+    goto out;
+  }
+  if (values % 3 != 0) {
     code = refuse(at->why, EXIT_FILES, "%s: %s has %lld values, expected a multiple of 3", at->path, attribute_name,
                   (long long)values);
     goto out;
@@ -165,6 +169,8 @@ static herr_t read_values(hid_t attribute, hid_t type) {
   hsize_t bytes = H5Aget_storage_size(attribute);
   unsigned char *values = malloc(bytes > 0 ? (size_t)bytes : 1);
   herr_t status = values ? H5Aread(attribute, type, values) : -1;
+  if (!values)
+    hdf5_out_of_memory();
   free(values);
   return status;
 }
