@@ -12,3 +12,7 @@ void keep_gsl_quiet(void) {
   static once_flag once = ONCE_FLAG_INIT;
   call_once(&once, switch_off);
 }
+
+ric_status gsl_status(int code) {
+  return code == GSL_ENOMEM ? RIC_ENOMEM : RIC_ENUMERIC;
+}

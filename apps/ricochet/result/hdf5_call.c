@@ -1,8 +1,10 @@
 #include "hdf5_call.h"
 
+#include <errno.h>
 #include <stdarg.h>
 #include <stdbool.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* What HDF5 itself forgets at its next call. */
@@ -11,37 +13,42 @@ static struct {
   bool memory;    /* memory has been short since the start */
 } failure;
 
-/* Whether a record of the error stack says that memory could not be allocated. */
-static bool is_about_memory(const H5E_error2_t *error) {
-  return error->maj_num == H5E_RESOURCE && (error->min_num == H5E_NOSPACE || error->min_num == H5E_CANTALLOC) &&
-         error->desc && !strstr(error->desc, "file");
-}
-
-/* Keeps the innermost description, and whether any is about memory. */
+/* Keeps the innermost description. */
 static herr_t take_reason(unsigned depth, const H5E_error2_t *error, void *user) {
   message *reason = user;
   (void)depth;
-  failure.memory = failure.memory || is_about_memory(error);
-  if (!reason->text[0] && error->desc)
-    snprintf(reason->text, sizeof reason->text, "%s", error->desc);
-  return 0;
+  if (!error->desc || !error->desc[0])
+    return 0;
+  snprintf(reason->text, sizeof reason->text, "%s", error->desc);
+  return 1;
 }
 
-/* HDF5 calls it at the end of each of its functions that fails, in place of printing its error stack. */
+/* HDF5 calls it at the end of each of its functions that fails, in place of printing its error stack. Not every record
+ * of that says when memory was short; what the C library left does. */
 static herr_t note_failure(hid_t stack, void *user) {
   message reason = {""};
   (void)user;
+  failure.memory = failure.memory || errno == ENOMEM;
   (void)H5Ewalk2(stack, H5E_WALK_UPWARD, take_reason, &reason);
   if (!failure.reason.text[0])
     failure.reason = reason;
   return 0;
 }
 
+/* HDF5 does not survive that it gets no memory while it starts. */
+static bool has_room(void) {
+  enum { ROOM = 4 << 20 };
+  void *room = malloc(ROOM);
+  free(room);
+  return room != NULL;
+}
+
 int hdf5_start(const file_place *at) {
   (void)H5dont_atexit(); /* at exit HDF5 would flush handles whose close failed, and crash; all others are closed */
   failure.reason.text[0] = '\0';
   failure.memory = false;
-  if (H5Eset_auto2(H5E_DEFAULT, note_failure, NULL) < 0)
+  errno = 0;
+  if (!has_room() || H5Eset_auto2(H5E_DEFAULT, note_failure, NULL) < 0)
     return refuse(at->why, EXIT_RUN, "%s: HDF5 cannot start: out of memory", at->path);
   return 0;
 }
@@ -65,6 +72,7 @@ static void keep_system_words(message *reason) {
 
 int hdf5_refuse(const file_place *at, const char *what, ...) {
   message task, reason = failure.reason;
+  failure.memory = failure.memory || errno == ENOMEM; /* the tools above HDF5's functions fail without a word */
   failure.reason.text[0] = '\0';
   if (failure.memory || !reason.text[0])
     snprintf(reason.text, sizeof reason.text, "%s", failure.memory ? "out of memory" : "unknown reason");

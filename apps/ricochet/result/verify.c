@@ -114,9 +114,13 @@ static int check_values(const file_place *at, hid_t file) {
 
 /* --- checking --- */
 
-static int check_one(const file_place *at, FILE *from, const heap *h) {
+/* @param end  of the file */
+static int check_one(const file_place *at, FILE *from, off_t end, const heap *h) {
   bool good = false;
-  unsigned char *bytes = h->address >= 0 && h->size > 0 ? malloc((size_t)h->size) : NULL;
+  const bool possible = h->address >= 0 && h->size > 0 && h->size <= end;
+  unsigned char *bytes = possible ? malloc((size_t)h->size) : NULL;
+  if (possible && !bytes)
+    return refuse(at->why, EXIT_RUN, "%s: out of memory", at->path);
   if (bytes && fseeko(from, (off_t)h->address, SEEK_SET) == 0)
     good = fread(bytes, (size_t)h->size, 1, from) == 1 && digest_of(bytes, (size_t)h->size) == h->digest;
   free(bytes);
@@ -130,8 +134,9 @@ static int check_all(const file_place *at, const char *path, const heap *heaps, 
   if (!from)
     return refuse(at->why, EXIT_FILES, "%s: cannot open it again", at->path);
   int code = 0;
+  const off_t end = fseeko(from, 0, SEEK_END) == 0 ? ftello(from) : 0;
   for (size_t i = 0; !code && i < count; i++)
-    code = check_one(at, from, &heaps[i]);
+    code = check_one(at, from, end, &heaps[i]);
   fclose(from); /* only read */
   return code;
 }

@@ -300,10 +300,10 @@ static ric_status move(worker *w, observation *seen, ric_run *did, verdict *foun
   ric_system_destroy(&system);
   if (status == RIC_ESTOPPED)
     return status;
+  if (status == RIC_OK && (seen->no_memory || seen->converged.no_memory))
+    status = ric_fail(&error, RIC_ENOMEM, "no memory for the events");
   if (status != RIC_OK)
     note_outcome(found, TRAJECTORY_REFUSED, error.message);
-  else if (seen->no_memory || seen->converged.no_memory)
-    note_outcome(found, TRAJECTORY_REFUSED, "no memory for the events");
   else
     note_outcome(found, (int)did->outcome, did->reason);
   return RIC_OK;
