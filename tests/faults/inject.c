@@ -77,6 +77,8 @@ static void log_stack(const char *what, int skipped) {
   log_text(text);
 }
 
+static char signal_stack[1 << 16]; /* for recursions without an end */
+
 static void log_signal(int number) {
   char what[32];
   counting = false;
@@ -171,9 +173,11 @@ __attribute__((constructor)) static void read_settings(void) {
   lists_places = *setting("FAULT_PLACES");
   error_number = (int)strtol(setting("FAULT_ERROR"), NULL, 10);
   name = setting("FAULT_NAME");
+  sigaltstack(&(stack_t){.ss_sp = signal_stack, .ss_size = sizeof signal_stack}, NULL);
   log_file = open(setting("FAULT_LOG"), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0600);
   for (size_t i = 0; i < sizeof deadly / sizeof *deadly; i++)
-    sigaction(deadly[i], &(struct sigaction){.sa_handler = log_signal, .sa_flags = (int)SA_RESETHAND | SA_NODEFER},
+    sigaction(deadly[i],
+              &(struct sigaction){.sa_handler = log_signal, .sa_flags = (int)SA_RESETHAND | SA_NODEFER | SA_ONSTACK},
               NULL);
 }
 

@@ -65,7 +65,7 @@ class Study:
 
 
 def kind_of(text):
-    return re.search(r"^kind: *(\w+)", text, re.M).group(1)
+    return re.search(r"^kind: *(\w+)", text, re.MULTILINE).group(1)
 
 
 def shrunken(text):

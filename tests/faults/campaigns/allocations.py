@@ -1,6 +1,7 @@
-"""Every allocation fails once, of the program and of its libraries: those whose stack differs from all before, over all
-shipped studies made small, and over check and show. What is expected: done, with the same result, or code 1 and a
-sentence that says memory; then --resume gives the same result; never a signal, nothing left behind."""
+"""Every allocation fails once, of the program and of its libraries: those whose callers differ from all before, over all
+shipped studies made small, and over check and show; some 10,000 trials, a second each. Expected: done, with the same
+result, or code 1 and a sentence that says memory, and then --resume gives the same result. Crashes of libraries are
+known, with their stack, if the allocation was their own; --resume follows them too."""
 
 import re
 
@@ -10,31 +11,39 @@ from program import DONE, RUN, names
 
 READERS = (["check", "s.yaml"], ["show", "s.h5"], ["show", "s.h5", "--csv"], ["show", "s.h5", "--verify"])
 
-# Crashes of libraries that have no memory, which nothing that we call prevents: the function that crashes, and whose.
-KNOWN = {}
+# Libraries that do not survive that one of their own allocations fails, and what of it we can prevent: before they
+# begin, the program looks whether there is room for all they take. One failure in their midst it cannot prevent.
+LIBRARIES = {"libfftw3": "FFTW aborts while it plans", "libhdf5": "HDF5 crashes or exits with -1",
+             "libsundials": "SUNDIALS crashes while it sets up vectors", "libgsl": "GSL crashes in a decomposition"}  # fmt: skip
 
 
-def expect_no_signal(run):
-    """A crash of a library at a place that we know is told apart from all others."""
-    for what, stack in run.stacks.items():
-        for place, why in KNOWN.items():
-            if what.startswith("signal") and re.search(place, stack):
-                raise Known(f"{why}: {stack}")
-    assert run.result.code >= 0 and not any(what.startswith("signal") for what in run.stacks), run
+def crash_of_a_library(run):
+    """Whose crash it is, and where, if the allocation that failed was its own; None if the program did not crash. Fails
+    for every other crash."""
+    died = {what: stack for what, stack in run.stacks.items() if what.startswith("signal")}
+    if run.result.code in (DONE, RUN) and not died:
+        return None
+    fault = next(stack for what, stack in run.stacks.items() if what not in died)
+    whose = next((why for library, why in LIBRARIES.items() if fault.startswith(library)), None)
+    assert whose and (died or run.result.code == 255), run
+    return f"{whose}: {fault}"
 
 
 def expect_memory_in_words(run):
+    """In the last line: SUNDIALS and HDF5 may have said it before, in their own words."""
     assert run.result.code == RUN, run
-    lines = run.result.err.splitlines()
-    assert len(lines) == 1 and re.search(r"\b(no|out of|not enough) memory\b", lines[0]), run
-    assert "damaged" not in lines[0] and "unknown reason" not in lines[0], run
+    line = run.result.err.splitlines()[-1]
+    assert re.search(r"\b(no|out of) memory\b", line) and "damaged" not in line and "unknown reason" not in line, run
 
 
-def fail_a_run(study, at, settings):
+def fail_a_run(study, at):
     def trial(ricochet, folder):
         study.put(folder)
-        run = study.run(ricochet, folder, calls="memory", at=at, **settings)
-        expect_no_signal(run)
+        run = study.run(ricochet, folder, calls="memory", at=at)
+        crash = crash_of_a_library(run)
+        if crash:
+            study.expect_resumed(ricochet, folder)
+            raise Known(crash)
         if run.result.code == DONE:
             study.expect_whole(folder)
             return "done"
@@ -51,7 +60,9 @@ def fail_a_reader(study, words, at, said):
         study.put(folder)
         study.put_result(folder)
         run = Injected(ricochet, *words, cwd=folder, calls="memory", at=at)
-        expect_no_signal(run)
+        crash = crash_of_a_library(run)
+        if crash:
+            raise Known(crash)
         if run.result.code == DONE:
             assert run.result.out == said, run
             return "done"
@@ -71,7 +82,7 @@ def trials(ricochet):
 
     for study in shipped_studies(ricochet):
         for at in new_places(study.count("memory", places=1)):
-            found.append(Trial(f"run {study.name} {at}", fail_a_run(study, at, {})))
+            found.append(Trial(f"run {study.name} {at}", fail_a_run(study, at)))
     for study in study_of_every_kind(ricochet):
         study.count("memory")
         for words in READERS:
