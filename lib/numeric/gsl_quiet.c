@@ -16,3 +16,7 @@ void keep_gsl_quiet(void) {
 ric_status gsl_status(int code) {
   return code == GSL_ENOMEM ? RIC_ENOMEM : RIC_ENUMERIC;
 }
+
+const char *gsl_text(int code) {
+  return code == GSL_ENOMEM ? "no memory" : gsl_strerror(code);
+}

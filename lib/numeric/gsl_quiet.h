@@ -10,5 +10,7 @@ void keep_gsl_quiet(void);
 
 /** RIC_ENOMEM or RIC_ENUMERIC, for a code that is not GSL_SUCCESS. */
 ric_status gsl_status(int code);
+/** What it means, for messages. */
+const char *gsl_text(int code);
 
 #endif

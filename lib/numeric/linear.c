@@ -73,7 +73,7 @@ static double upper_norm1(const double *r, size_t size) {
 }
 
 static ric_status fail(ric_error *error, size_t size, int code) {
-  return ric_fail(error, gsl_status(code), "linear system of size %zu: %s", size, gsl_strerror(code));
+  return ric_fail(error, gsl_status(code), "linear system of size %zu: %s", size, gsl_text(code));
 }
 
 ric_status linear_solve(double *matrix, size_t size, double *rhs, double *x, const linear_work *w,

@@ -222,7 +222,7 @@ ric_status contact_observable(const unit_cell *cell, const border_mode *modes, s
   int code = diagonalise(gram, count, values, vectors);
   if (code)
     return ric_fail(error, gsl_status(code), "eigenvalues of a %zu x %zu Gram matrix: %s", count, count,
-                    gsl_strerror(code));
+                    gsl_text(code));
   /* A mode of unit length has squares of order 1/n at the contacts; rounding leaves 1e-16 of that. */
   double least = 1e-13 / (double)cell->chain.particles;
   while (*observable < count && values[*observable] > least)
@@ -349,7 +349,7 @@ static ric_status contact_eigenvalues(contact_system *c, const unit_cell *cell, 
   int code = gsl_eigen_symm(&a.matrix, &e.vector, w);
   gsl_eigen_symm_free(w);
   if (code)
-    return ric_fail(error, gsl_status(code), "eigenvalues of the contact matrix: %s", gsl_strerror(code));
+    return ric_fail(error, gsl_status(code), "eigenvalues of the contact matrix: %s", gsl_text(code));
   gsl_sort_vector(&e.vector);
   return RIC_OK;
 }

@@ -2,10 +2,12 @@
  *
  *   FAULT_CALLS   memory: malloc and its kin, in the program and in every library
  *                 files: calls on files whose path contains FAULT_NAME, and on what they have opened
+ *   FAULT_ONLY    if set, of these only the calls of one function: close
  *   FAULT_AT      the so many-th call fails, counted from 1 on from the beginning of main; 0: none
  *   FAULT_ON      if set, all later calls fail as well
  *   FAULT_ERROR   the errno of files, a number; memory has ENOMEM
- *   FAULT_PLACES  if set, the log gets a line for every call whose innermost callers differ from all before
+ *   FAULT_PLACES  if set, the log gets a line for every call whose innermost callers differ from all before, with the
+ *                 innermost
  *   FAULT_LOG     a file that gets a line for the fault, with the stack that leads to it; one for a deadly signal, with
  *                 its stack; and the number of calls at the end
  *
@@ -30,12 +32,12 @@
 
 #define VISIBLE __attribute__((visibility("default")))
 
-enum { MOST_FILES = 1024, MOST_FRAMES = 40, MOST_TEXT = 8192, MOST_CALLERS = 10, MOST_PLACES = 1 << 16 };
+enum { MOST_FILES = 1024, MOST_FRAMES = 40, MOST_TEXT = 8192, MOST_CALLERS = 12, MOST_PLACES = 1 << 16 };
 
 static bool in_memory, in_files, goes_on, lists_places, counting;
 static unsigned long calls, at;
 static int error_number, log_file = -1;
-static const char *name;
+static const char *name = "", *only = "";
 static bool is_watched[MOST_FILES]; /* by file descriptor */
 
 /* --- the log -------------------------------------------------------------------------------------------------------
@@ -64,13 +66,26 @@ static size_t put_frame(void *address, char *text, size_t size) {
   return (size_t)snprintf(text, size, " %s+%#zx", library, (size_t)((char *)address - (char *)where.dli_fbase));
 }
 
-/* @param skipped  innermost frames that are ours */
-static void log_stack(const char *what, int skipped) {
+static void *base_of(void *address) {
+  struct dl_find_object where;
+  return _dl_find_object(address, &where) == 0 ? (void *)where.dlfo_link_map : NULL;
+}
+
+/* The stack without our own innermost frames. @param frames  [most] @param skipped  set @returns the number of all */
+static int callers(void **frames, int most, int *skipped) {
+  const int count = backtrace(frames, most);
+  for (*skipped = 0; *skipped < count && base_of(frames[*skipped]) == base_of(frames[0]); ++*skipped)
+    continue;
+  return count;
+}
+
+static void log_stack(const char *what) {
   void *frames[MOST_FRAMES];
   char text[MOST_TEXT];
-  const int count = backtrace(frames, MOST_FRAMES);
+  int i;
+  const int count = callers(frames, MOST_FRAMES, &i);
   size_t used = (size_t)snprintf(text, sizeof text, "%s:", what);
-  for (int i = skipped; i < count && used + 200 < sizeof text; i++)
+  for (; i < count && used + 200 < sizeof text; i++)
     used += put_frame(frames[i], text + used, 200);
   text[used] = '\n';
   text[used + 1] = '\0';
@@ -83,7 +98,7 @@ static void log_signal(int number) {
   char what[32];
   counting = false;
   snprintf(what, sizeof what, "signal %d", number);
-  log_stack(what, 2);
+  log_stack(what);
   raise(number); /* deadly now: SA_RESETHAND */
 }
 
@@ -105,16 +120,20 @@ static uint64_t digest_of(void *const *frames, int count) {
 }
 
 static void list_place(void) {
-  void *frames[MOST_FRAMES];
-  char text[64];
-  const uint64_t digest = digest_of(frames, backtrace(frames, MOST_CALLERS));
+  void *frames[MOST_CALLERS];
+  char text[256];
+  int ours;
+  const int count = callers(frames, MOST_CALLERS, &ours);
+  const uint64_t digest = digest_of(frames, count);
   size_t home = digest % MOST_PLACES;
   while (places[home] && places[home] != digest)
     home = (home + 1) % MOST_PLACES;
   if (places[home])
     return;
   places[home] = digest;
-  snprintf(text, sizeof text, "place: %lu %016llx\n", calls, (unsigned long long)digest);
+  size_t used = (size_t)snprintf(text, sizeof text, "place: %lu %016llx", calls, (unsigned long long)digest);
+  used += put_frame(frames[ours], text + used, sizeof text - used - 2);
+  snprintf(text + used, sizeof text - used, "\n");
   log_text(text);
 }
 
@@ -123,7 +142,7 @@ static void list_place(void) {
 
 /* Whether this call fails. */
 static bool fails(bool is_counted, const char *what) {
-  if (!counting || !is_counted)
+  if (!counting || !is_counted || (*only && strcmp(only, what) != 0))
     return false;
   calls++;
   if (lists_places) {
@@ -135,7 +154,7 @@ static bool fails(bool is_counted, const char *what) {
     return false;
   counting = false; /* what the log needs is no call of the program */
   if (calls == at)
-    log_stack(what, 3);
+    log_stack(what);
   counting = true;
   return true;
 }
@@ -173,6 +192,7 @@ __attribute__((constructor)) static void read_settings(void) {
   lists_places = *setting("FAULT_PLACES");
   error_number = (int)strtol(setting("FAULT_ERROR"), NULL, 10);
   name = setting("FAULT_NAME");
+  only = setting("FAULT_ONLY");
   sigaltstack(&(stack_t){.ss_sp = signal_stack, .ss_size = sizeof signal_stack}, NULL);
   log_file = open(setting("FAULT_LOG"), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0600);
   for (size_t i = 0; i < sizeof deadly / sizeof *deadly; i++)

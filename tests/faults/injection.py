@@ -21,10 +21,12 @@ class Injected:
         lines = [line.partition(": ") for line in log.read_text().splitlines()]
         self.stacks = {what: stack for what, _, stack in lines}  # of the fault by its function, of a `signal N`
         self.calls = int(self.stacks.pop("calls", 0))
-        self.places = [rest.split() for what, _, rest in lines if what == "place"]  # [call, digest of its stack]
+        self.places = [rest.split() for what, _, rest in lines if what == "place"]  # [call, digest of its stack, innermost caller]
 
     def __str__(self):
         return "\n".join([str(self.result), *(f"  {what}: {stack}" for what, stack in self.stacks.items())])
+
+    __repr__ = __str__  # for asserts
 
 
 class Study:

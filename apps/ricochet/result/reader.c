@@ -419,12 +419,14 @@ void reader_value(const reader_set *s, const unsigned char *value, int digits, c
 }
 
 int reader_cell(const file_place *at, const reader_set *s, uint64_t row, int digits, char *text, size_t size) {
-  unsigned char *value = s && s->rank == 1 && row < s->shape[0] ? calloc(1, s->value_bytes + 1) : NULL;
-  int code = 0;
   *text = '\0';
-  if (value)
-    code = reader_rows(at, s, row, 1, value);
-  if (value && !code)
+  if (!s || s->rank != 1 || row >= s->shape[0])
+    return 0;
+  unsigned char *value = calloc(1, s->value_bytes + 1);
+  if (!value)
+    return refuse(at->why, EXIT_RUN, "%s: out of memory", at->path);
+  const int code = reader_rows(at, s, row, 1, value);
+  if (!code)
     reader_value(s, value, digits, text, size);
   free(value);
   return code;

@@ -28,7 +28,7 @@ struct lock {
 static lock *lock_allocate(const char *folder, message *why) {
   lock *l = malloc(sizeof *l);
   if (!l) {
-    refuse(why, EXIT_FILES, "%s: out of memory for the lock", folder);
+    refuse(why, EXIT_RUN, "%s: out of memory for the lock", folder);
     return NULL;
   }
   l->fd = -1;
@@ -136,7 +136,7 @@ int lock_take(const char *folder, double wait_seconds, lock **out, message *why)
   *out = NULL;
   lock *l = lock_allocate(folder, why);
   if (!l)
-    return EXIT_FILES;
+    return EXIT_RUN;
   int code = wait_for_whole(l, wait_seconds, why);
   if (!code)
     code = write_holder(l, why);
@@ -166,7 +166,7 @@ int lock_join(const char *folder, int rank, lock **out, message *why) {
   *out = NULL;
   lock *l = lock_allocate(folder, why);
   if (!l)
-    return EXIT_FILES;
+    return EXIT_RUN;
   const int code = join(l, rank, why);
   if (code)
     lock_release(&l, 0);
