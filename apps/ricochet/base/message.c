@@ -15,7 +15,8 @@ int refuse(message *why, int code, const char *format, ...) {
 }
 
 int refuse_errno(const char *path, const char *what, message *why) {
-  return refuse(why, EXIT_FILES, "%s: cannot %s: %s", path, what, strerror(errno));
+  const int code = errno == ENOMEM ? EXIT_RUN : EXIT_FILES;
+  return refuse(why, code, "%s: cannot %s: %s", path, what, strerror(errno));
 }
 
 void escape_text(const char *from, char *to, size_t size) {

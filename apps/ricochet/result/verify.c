@@ -132,7 +132,7 @@ static int check_one(const file_place *at, FILE *from, off_t end, const heap *h)
 static int check_all(const file_place *at, const char *path, const heap *heaps, size_t count) {
   FILE *from = fopen(path, "rb");
   if (!from)
-    return refuse(at->why, EXIT_FILES, "%s: cannot open it again", at->path);
+    return refuse_errno(at->path, "open it again", at->why);
   int code = 0;
   const off_t end = fseeko(from, 0, SEEK_END) == 0 ? ftello(from) : 0;
   for (size_t i = 0; !code && i < count; i++)
