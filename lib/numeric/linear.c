@@ -8,6 +8,8 @@
 #include <gsl/gsl_blas.h>
 #include <gsl/gsl_linalg.h>
 
+#include "gsl_quiet.h"
+
 /* A pivot below this fraction of its diagonal entry is rounding. */
 static const double dependent = 1e-12;
 
@@ -71,8 +73,7 @@ static double upper_norm1(const double *r, size_t size) {
 }
 
 static ric_status fail(ric_error *error, size_t size, int code) {
-  return ric_fail(error, code == GSL_ENOMEM ? RIC_ENOMEM : RIC_ENUMERIC, "linear system of size %zu: %s", size,
-                  gsl_strerror(code));
+  return ric_fail(error, gsl_status(code), "linear system of size %zu: %s", size, gsl_text(code));
 }
 
 ric_status linear_solve(double *matrix, size_t size, double *rhs, double *x, const linear_work *w,
@@ -117,6 +118,7 @@ ric_status linear_least_norm(double *matrix, size_t size, double *rhs, double *x
 static const double dependence_share = 1e-13; /* remainder of a vector, relative to it, that counts as rounding */
 
 ric_status orthonormal_init(orthonormal_work *w, size_t size, size_t count, ric_error *error) {
+  keep_gsl_quiet();
   w->factors = gsl_matrix_alloc(size, count);
   w->tau = gsl_vector_alloc(count);
   w->column = gsl_vector_alloc(size);

@@ -16,7 +16,8 @@ int refuse(message *why, int code, const char *format, ...) {
 }
 
 int refuse_errno(const char *path, const char *what, message *why) {
-  return refuse(why, EXIT_FILES, "%s: cannot %s: %s", path, what, strerror(errno));
+  const int code = errno == ENOMEM ? EXIT_RUN : EXIT_FILES;
+  return refuse(why, code, "%s: cannot %s: %s", path, what, strerror(errno));
 }
 
 /* Bytes of the character of UTF-8 at this place; 0 if there is none. */

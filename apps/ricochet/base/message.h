@@ -31,7 +31,7 @@ typedef struct file_place {
  */
 int refuse(message *why, int code, const char *format, ...) __attribute__((format(printf, 3, 4)));
 
-/** EXIT_FILES with "PATH: cannot WHAT: REASON", the reason being that of errno. */
+/** EXIT_FILES with "PATH: cannot WHAT: REASON", the reason being that of errno; EXIT_RUN if it is memory. */
 int refuse_errno(const char *path, const char *what, message *why);
 
 /** Copies text that somebody else wrote so that a terminal shows it and does not obey it: control characters, also

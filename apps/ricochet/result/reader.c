@@ -16,8 +16,7 @@
 static int check_creator(const file_place *at, hid_t file) {
   char creator[64] = "";
   int64_t version = 0;
-  htri_t marked = H5Aexists(file, "creator");
-  int code = marked > 0 ? attribute_text_into(at, file, "creator", creator, sizeof creator) : 0;
+  int code = attribute_text_if_there(at, file, "creator", creator, sizeof creator);
   if (code)
     return code;
   if (strcmp(creator, RESULT_CREATOR) != 0)
@@ -41,7 +40,9 @@ int reader_open(const file_place *at, const char *path, reader_handle *file) {
   struct stat about;
   htri_t known;
   *file = H5I_INVALID_HID;
-  hdf5_quiet();
+  code = hdf5_start(at);
+  if (code)
+    return code;
   if (stat(path, &about) != 0)
     return refuse(at->why, EXIT_FILES, "%s: cannot open it: %s", at->path, strerror(errno));
   if (!S_ISREG(about.st_mode))
@@ -252,10 +253,6 @@ out:
   return hdf5_close(at, space, code);
 }
 
-static int read_name(const file_place *at, hid_t set, const char *attribute, char *name, size_t size) {
-  return H5Aexists(set, attribute) > 0 ? attribute_text_into(at, set, attribute, name, size) : 0;
-}
-
 static int open_set(const file_place *at, hid_t group, reader_set *s) {
   s->id = H5Dopen2(group, s->name, H5P_DEFAULT);
   if (s->id < 0)
@@ -270,8 +267,8 @@ static int open_set(const file_place *at, hid_t group, reader_set *s) {
   if (!code)
     code = attribute_text_into(at, s->id, "long_name", s->long_name, sizeof s->long_name);
   if (!code)
-    code = read_name(at, s->id, "parameter", s->parameter, sizeof s->parameter);
-  return code ? code : read_name(at, s->id, "observed", s->observed, sizeof s->observed);
+    code = attribute_text_if_there(at, s->id, "parameter", s->parameter, sizeof s->parameter);
+  return code ? code : attribute_text_if_there(at, s->id, "observed", s->observed, sizeof s->observed);
 }
 
 static int open_sets(const file_place *at, hid_t group, reader_group *g) {
@@ -445,12 +442,14 @@ void reader_value(const reader_set *s, const unsigned char *value, int digits, c
 }
 
 int reader_cell(const file_place *at, const reader_set *s, uint64_t row, int digits, char *text, size_t size) {
-  unsigned char *value = s && s->rank == 1 && row < s->shape[0] ? calloc(1, s->value_bytes + 1) : NULL;
-  int code = 0;
   *text = '\0';
-  if (value)
-    code = reader_rows(at, s, row, 1, value);
-  if (value && !code)
+  if (!s || s->rank != 1 || row >= s->shape[0])
+    return 0;
+  unsigned char *value = calloc(1, s->value_bytes + 1);
+  if (!value)
+    return refuse(at->why, EXIT_RUN, "%s: out of memory", at->path);
+  const int code = reader_rows(at, s, row, 1, value);
+  if (!code)
     reader_value(s, value, digits, text, size);
   free(value);
   return code;

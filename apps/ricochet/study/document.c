@@ -195,7 +195,7 @@ static int read_stream(const char *path, FILE *file, char **text, size_t *length
   *length = fread(bytes, 1, STUDY_MAX_BYTES + 1, file);
   int code = 0;
   if (ferror(file))
-    code = refuse(why, EXIT_FILES, "%s: cannot be read: %s", path, strerror(errno));
+    code = refuse_errno(path, "be read", why);
   else if (*length > STUDY_MAX_BYTES)
     code = refuse(why, EXIT_USAGE, "%s: larger than %d MiB, the limit for a study", path, STUDY_MAX_BYTES >> 20);
   if (code) {
@@ -211,7 +211,7 @@ static int read_stream(const char *path, FILE *file, char **text, size_t *length
 int study_read_file(const char *path, char **text, size_t *length, message *why) {
   FILE *file = fopen(path, "rb");
   if (!file)
-    return refuse(why, EXIT_FILES, "%s: cannot be opened: %s", path, strerror(errno));
+    return refuse_errno(path, "be opened", why);
   const int code = read_stream(path, file, text, length, why);
   fclose(file);
   return code;
