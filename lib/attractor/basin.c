@@ -82,20 +82,28 @@ static ric_status add_attractor(ric_basin *basin, const ric_attractor *run, size
   return RIC_OK;
 }
 
+static size_t period_of(const ric_attractor *run) {
+  return run->kind == RIC_ATTRACTOR_PERIODIC ? run->period : 0;
+}
+
+int64_t ric_basin_label(const ric_basin *basin, const ric_attractor *run) {
+  if (run->kind != RIC_ATTRACTOR_PERIODIC && run->kind != RIC_ATTRACTOR_APERIODIC)
+    return RIC_BASIN_NONE;
+  const size_t i = find_attractor(basin, run, period_of(run));
+  return i < basin->count ? (int64_t)i : RIC_BASIN_OTHER;
+}
+
 ric_status ric_basin_add(ric_basin *basin, const ric_attractor *run, int64_t *label, ric_error *error) {
-  const bool periodic = run->kind == RIC_ATTRACTOR_PERIODIC, settled = periodic || run->kind == RIC_ATTRACTOR_APERIODIC;
-  const size_t period = periodic ? run->period : 0;
-  if (periodic && !run->lowest)
+  const size_t period = period_of(run);
+  if (run->kind == RIC_ATTRACTOR_PERIODIC && !run->lowest)
     return ric_fail(error, RIC_EINVAL, "a run of period %zu without its lowest state", period);
-  int64_t found = RIC_BASIN_NONE;
-  if (settled) {
-    const size_t i = find_attractor(basin, run, period);
-    found = i < basin->options.limit ? (int64_t)i : RIC_BASIN_OTHER;
-    if (found >= 0 && i == basin->count)
-      RIC_TRY(add_attractor(basin, run, period, error));
-    if (found >= 0)
-      basin->attractors[i].starts++;
+  int64_t found = ric_basin_label(basin, run);
+  if (found == RIC_BASIN_OTHER && basin->count < basin->options.limit) {
+    found = (int64_t)basin->count;
+    RIC_TRY(add_attractor(basin, run, period, error));
   }
+  if (found >= 0)
+    basin->attractors[found].starts++;
   basin->added++;
   *label = found;
   return RIC_OK;

@@ -282,8 +282,8 @@ static ric_status find_zero(edge_search *w, double to) {
   }
   RIC_TRY(w->status);
   if (code != GSL_SUCCESS)
-    return ric_fail(w->error, RIC_ENUMERIC, "the edge near p = %.17g is not found: %s", parameter_of(w, &w->trial),
-                    gsl_strerror(code));
+    return ric_fail(w->error, gsl_status(code), "the edge near p = %.17g is not found: %s", parameter_of(w, &w->trial),
+                    gsl_text(code));
   return evaluate_place(w, root);
 }
 

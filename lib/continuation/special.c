@@ -329,7 +329,7 @@ static ric_status find_null_vectors(ric_curve *c, null_space *k, ric_error *erro
   memcpy(k->u->data + n * k->u->tda, c->bound_row, size * sizeof(double));
   int code = gsl_linalg_SV_decomp(k->u, k->v, k->s, k->work);
   if (code)
-    return ric_fail(error, RIC_ENUMERIC, "singular values of size %zu: %s", size, gsl_strerror(code));
+    return ric_fail(error, gsl_status(code), "singular values of size %zu: %s", size, gsl_text(code));
   double least = gsl_vector_get(k->s, n), next = gsl_vector_get(k->s, n - 1);
   if (!(least <= singular * next))
     return ric_fail(error, RIC_ENUMERIC, "no simple branch point: the least singular values are %.3g and %.3g", least,

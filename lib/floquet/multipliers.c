@@ -392,7 +392,7 @@ static ric_status find_alpha(even_spectrum *e, size_t first, ric_error *error) {
   gsl_vector_complex_view values = gsl_vector_complex_subvector(e->values, 0, e->count);
   int code = gsl_eigen_nonsymm(&rest.matrix, &values.vector, e->work[first]);
   if (code != GSL_SUCCESS)
-    return ric_fail(error, RIC_ENUMERIC, "eigenvalues of the reduced matrix: %s", gsl_strerror(code));
+    return ric_fail(error, gsl_status(code), "eigenvalues of the reduced matrix: %s", gsl_text(code));
   for (size_t i = 0; i < e->count; i++) {
     gsl_complex value = gsl_vector_complex_get(&values.vector, i);
     e->alpha[i] = (ric_complex){GSL_REAL(value), GSL_IMAG(value)};

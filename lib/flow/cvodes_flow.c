@@ -20,7 +20,7 @@
  * error of a step, in root mean square over the numbers of a state, is below `tolerance` times the root mean square of
  * the state. Functions return NULL or a static text that describes the failure. */
 
-enum { CVODES_ORDER = 12 };
+enum { CVODES_ORDER = 12, VECTORS = 3 * CVODES_ORDER /* at least as many as CVODES makes of a state, or tangent */ };
 
 /** Tangent vectors in CVODES' forward sensitivity analysis (staggered, under the error control of the state). */
 typedef struct cvodes_tangents {
@@ -147,7 +147,7 @@ static void cvodes_solver_clear(cvodes_solver *s) {
 }
 
 static ric_status cvodes_solver_init(cvodes_solver *s, double longest_step, ric_error *error) {
-  if (sundials_context_create(&s->context) == 0) {
+  if (sundials_has_room(VECTORS * s->size) && sundials_context_create(&s->context) == 0) {
     s->y = N_VNew_Serial((sunindextype)s->size, s->context);
     s->row = N_VNewEmpty_Serial((sunindextype)s->size, s->context);
     s->memory = CVodeCreate(CV_ADAMS, s->context);
@@ -258,7 +258,8 @@ static int rates(int count, sunrealtype t, N_Vector y, N_Vector y_rate, N_Vector
 
 static ric_status allocate_sensitivities(cvodes_solver *s, size_t columns, ric_error *error) {
   cvodes_tangents *d = &s->tangents;
-  d->vector = columns < 1u << 20 ? N_VCloneVectorArray((int)columns, s->y) : NULL;
+  if (columns < 1u << 20 && sundials_has_room(VECTORS * s->size * columns))
+    d->vector = N_VCloneVectorArray((int)columns, s->y);
   d->absolute = malloc(columns * sizeof *d->absolute);
   d->d = malloc(2 * columns * sizeof *d->d);
   d->d_rate = d->d + columns;

@@ -243,7 +243,7 @@ static ric_status decompose(problem *p, ric_error *error) {
   if (!code)
     code = gsl_eigen_symmv_sort(&values.vector, &y.matrix, GSL_EIGEN_SORT_VAL_ASC);
   if (code)
-    return ric_fail(error, RIC_ENUMERIC, "modes of %zu coordinates: %s", p->n, gsl_strerror(code));
+    return ric_fail(error, gsl_status(code), "modes of %zu coordinates: %s", p->n, gsl_text(code));
   double rounding = 8 * DBL_EPSILON * (double)p->n * largest(p->values, p->n);
   if (!(p->values[0] >= -rounding))
     return ric_fail(error, RIC_ENUMERIC, "w^2 = %g of the slowest mode, expected >= 0: the stiffness is not definite",

@@ -12,6 +12,8 @@
 
 #include "ricochet/elementary.h"
 
+#include "gsl_quiet.h"
+
 /* A pivot below this fraction of its diagonal entry is rounding. */
 static const double dependent = 1e-12;
 
@@ -75,8 +77,7 @@ static double upper_norm1(const double *r, size_t size) {
 }
 
 static ric_status fail(ric_error *error, size_t size, int code) {
-  return ric_fail(error, code == GSL_ENOMEM ? RIC_ENOMEM : RIC_ENUMERIC, "linear system of size %zu: %s", size,
-                  gsl_strerror(code));
+  return ric_fail(error, gsl_status(code), "linear system of size %zu: %s", size, gsl_text(code));
 }
 
 /* Whether a long loop is to stop, asked for each of `size` columns. */
@@ -230,6 +231,7 @@ ric_status linear_eigenvalues(double *matrix, size_t size, double *eigenvalues, 
 static const double dependence_share = 1e-13; /* remainder of a vector, relative to it, that counts as rounding */
 
 ric_status orthonormal_init(orthonormal_work *w, size_t size, size_t count, ric_error *error) {
+  keep_gsl_quiet();
   w->factors = gsl_matrix_alloc(size, count);
   w->tau = gsl_vector_alloc(count);
   w->column = gsl_vector_alloc(size);

@@ -12,7 +12,7 @@
 #include "vector.h"
 #include "sundials_context.h"
 
-enum { MOST_STEPS = 200 };
+enum { MOST_STEPS = 200, VECTORS = 16 /* at least as many as KINSOL makes */ };
 
 /* Residuals below this multiple of the tolerance that no longer decrease are rounding of ill-conditioned problems. */
 static const double rounding = 1e4;
@@ -80,7 +80,7 @@ static ric_status search_init(search *k, double *z, double tolerance, ric_error 
   size_t unknowns = k->problem->unknowns;
   sunindextype n = (sunindextype)unknowns;
   k->J = malloc(unknowns * unknowns * sizeof *k->J);
-  if (k->J && sundials_context_create(&k->context) == 0) {
+  if (k->J && sundials_has_room((unknowns + VECTORS) * unknowns) && sundials_context_create(&k->context) == 0) {
     k->z = N_VMake_Serial(n, z, k->context);
     k->z_scale = N_VNew_Serial(n, k->context);
     k->F_scale = N_VNew_Serial(n, k->context);

@@ -1,6 +1,15 @@
 #include "sundials_context.h"
 
-#include <stddef.h>
+#include <stdint.h>
+#include <stdlib.h>
+
+enum { HEADS = 1 << 16 }; /* bytes of what SUNDIALS makes beside the numbers of its vectors */
+
+bool sundials_has_room(size_t numbers) {
+  void *room = numbers < (SIZE_MAX - HEADS) / sizeof(double) ? malloc(numbers * sizeof(double) + HEADS) : NULL;
+  free(room);
+  return room != NULL;
+}
 
 #if SUNDIALS_VERSION_MAJOR >= 7
 int sundials_context_create(SUNContext *context) {

@@ -2,6 +2,9 @@
 #ifndef RICOCHET_SUNDIALS_CONTEXT_H
 #define RICOCHET_SUNDIALS_CONTEXT_H
 
+#include <stdbool.h>
+#include <stddef.h>
+
 #include <sundials/sundials_config.h>
 #include <sundials/sundials_context.h>
 
@@ -11,6 +14,10 @@
 
 /** @returns 0, or non-zero on failure. Free it with SUNContext_Free. */
 int sundials_context_create(SUNContext *context);
+
+/** Whether there is room for so many numbers, in vectors that SUNDIALS is about to make: it does not survive that one
+ * of them fails. */
+bool sundials_has_room(size_t numbers);
 
 #if SUNDIALS_VERSION_MAJOR < 7
 /** The error handler of solvers of version 6; in version 7 the context has it. */

@@ -90,8 +90,8 @@ static ric_status find_zero(search *s, double (*function)(double, void *), void 
       break;
   }
   *zero = gsl_root_fsolver_root(s->brent);
-  return code ? ric_fail(s->error, RIC_ENUMERIC, "end of an interval in [%.17g, %.17g]: %s", low, high,
-                         gsl_strerror(code))
+  return code ? ric_fail(s->error, gsl_status(code), "end of an interval in [%.17g, %.17g]: %s", low, high,
+                         gsl_text(code))
               : RIC_OK;
 }
 

@@ -10,6 +10,7 @@
 #include "model/image_ring.h"
 #include "numeric/constants.h"
 #include "ricochet/elementary.h"
+#include "numeric/gsl_quiet.h"
 
 /* Waves with n |sin d| below it are separated from the response. Their remainder in the contact matrix, 2 / n times
  * 1 / (2 omega |sin d|), is then of order one, so that no digits cancel there unless the matrix is singular. */
@@ -224,8 +225,8 @@ ric_status contact_observable(const unit_cell *cell, const border_mode *modes, s
   }
   int code = diagonalise(gram, count, values, vectors);
   if (code)
-    return ric_fail(error, RIC_ENUMERIC, "eigenvalues of a %zu x %zu Gram matrix: %s", count, count,
-                    gsl_strerror(code));
+    return ric_fail(error, gsl_status(code), "eigenvalues of a %zu x %zu Gram matrix: %s", count, count,
+                    gsl_text(code));
   /* A mode of unit length has squares of order 1/n at the contacts; rounding leaves 1e-16 of that. */
   double least = 1e-13 / (double)cell->chain.particles;
   while (*observable < count && values[*observable] > least)

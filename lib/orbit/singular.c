@@ -63,8 +63,8 @@ static ric_status find_zero(family *f, gsl_root_fsolver *brent, double low, doub
   }
   *zero = gsl_root_fsolver_root(brent);
   RIC_TRY(f->status);
-  return code ? ric_fail(f->error, RIC_ENUMERIC, "zero of the contact determinant in [%.17g, %.17g]: %s", low, high,
-                         gsl_strerror(code))
+  return code ? ric_fail(f->error, gsl_status(code), "zero of the contact determinant in [%.17g, %.17g]: %s", low, high,
+                         gsl_text(code))
               : RIC_OK;
 }
 

@@ -213,7 +213,7 @@ static ric_status dense_solve(const ric_chain *chain, const ric_pattern *pattern
   RIC_TRY(dense_alloc(&d, n, error));
   int code = exponentiate(&d, chain, period / 2);
   ric_status status =
-      code ? ric_fail(error, RIC_ENUMERIC, "matrix exponential of size %zu: %s", 2 * n, gsl_strerror(code))
+      code ? ric_fail(error, gsl_status(code), "matrix exponential of size %zu: %s", 2 * n, gsl_text(code))
            : solve_matrix(&d, chain, pattern, options, solution, error);
   if (status == RIC_OK)
     gsl_blas_dgemv(CblasNoTrans, 1, d.flow, d.x, 0, d.x_half);

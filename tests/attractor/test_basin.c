@@ -59,6 +59,8 @@ static void starts_of_one_attractor_have_one_label(void **state) {
   assert_int_equal(ric_basin_count(basin), CYCLES);
   for (size_t c = 0; c < CYCLES; c++) {
     const ric_basin_attractor a = ric_basin_at(basin, (size_t)label[c]);
+    const ric_attractor run = {.kind = RIC_ATTRACTOR_PERIODIC, .period = 1 + c / 2, .lowest = at[c]};
+    assert_int_equal(ric_basin_label(basin, &run), label[c]);
     assert_true(a.period == 1 + c / 2 && a.first == first[c] && a.starts == starts[c]);
     for (size_t i = 0; i < SIZE; i++)
       assert_close(a.lowest[i], at[c][i], 1e-5 * pow(10, (double)c - 3));
@@ -88,6 +90,9 @@ static void attractors_without_a_period_are_one_and_runs_that_came_to_nothing_no
   assert_int_equal(add(basin, RIC_ATTRACTOR_DIVERGED, 0, NULL), RIC_BASIN_NONE);
   assert_int_equal(add(basin, RIC_ATTRACTOR_APERIODIC, 0, b), 0);
   assert_int_equal(add(basin, RIC_ATTRACTOR_APERIODIC, 0, NULL), 0);
+  const ric_attractor failed = {.kind = RIC_ATTRACTOR_FAILED}, aperiodic = {.kind = RIC_ATTRACTOR_APERIODIC};
+  assert_int_equal(ric_basin_label(basin, &failed), RIC_BASIN_NONE);
+  assert_int_equal(ric_basin_label(basin, &aperiodic), 0);
   assert_int_equal(ric_basin_count(basin), 1);
   assert_int_equal(ric_basin_at(basin, 0).first, 1);
   assert_int_equal(ric_basin_at(basin, 0).starts, 3);
@@ -101,7 +106,9 @@ static void attractors_beyond_the_limit_are_not_told_apart(void **state) {
   for (int round = 0; round < 2; round++)
     for (size_t period = 1; period < 7; period++) {
       double lowest[SIZE] = {1, 1, 1};
+      const ric_attractor run = {.kind = RIC_ATTRACTOR_PERIODIC, .period = period, .lowest = lowest};
       const int64_t label = add(basin, RIC_ATTRACTOR_PERIODIC, period, lowest);
+      assert_int_equal(ric_basin_label(basin, &run), label);
       assert_int_equal(label, period <= 3 ? (int64_t)period - 1 : RIC_BASIN_OTHER);
     }
   assert_int_equal(ric_basin_count(basin), 3);

@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <stdarg.h>
 #include <stdbool.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -15,21 +16,46 @@ int refuse(message *why, int code, const char *format, ...) {
 }
 
 int refuse_errno(const char *path, const char *what, message *why) {
-  return refuse(why, EXIT_FILES, "%s: cannot %s: %s", path, what, strerror(errno));
+  const int code = errno == ENOMEM ? EXIT_RUN : EXIT_FILES;
+  return refuse(why, code, "%s: cannot %s: %s", path, what, strerror(errno));
+}
+
+/* Bytes of the character of UTF-8 at this place; 0 if there is none. */
+static size_t utf8_bytes(const unsigned char *at) {
+  static const uint32_t least[] = {0, 0, 0x80, 0x800, 0x10000}; /* of so many bytes; lower ones are written in fewer */
+  const size_t count = *at < 0x80 ? 1 : *at >= 0xc0 && *at < 0xe0 ? 2 : *at >= 0xe0 && *at < 0xf0 ? 3 : 4;
+  if (count == 1)
+    return 1;
+  if (*at < 0xc0 || *at >= 0xf8)
+    return 0;
+  uint32_t letter = *at & (0x7fu >> count);
+  for (size_t i = 1; i < count; i++) {
+    if ((at[i] & 0xc0) != 0x80)
+      return 0;
+    letter = letter << 6 | (at[i] & 0x3fu);
+  }
+  const bool surrogate = letter >= 0xd800 && letter < 0xe000;
+  return letter >= least[count] && letter <= 0x10ffff && !surrogate ? count : 0;
+}
+
+/* Control characters, also the second set, C1, which takes two bytes. */
+static bool is_control(const unsigned char *at) {
+  return *at < 0x20 || *at == 0x7f || (*at == 0xc2 && at[1] < 0xa0);
 }
 
 void escape_text(const char *from, char *to, size_t size) {
-  size_t used = 0;
-  for (const unsigned char *at = (const unsigned char *)from; *at; at++) {
-    const bool second = *at == 0xc2 && at[1] >= 0x80 && at[1] < 0xa0; /* C1 in UTF-8: two bytes */
-    const bool control = *at < 0x20 || *at == 0x7f || second;
-    if (used + (control ? 4 : 1) >= size)
+  size_t used = 0, count;
+  for (const unsigned char *at = (const unsigned char *)from; *at; at += count) {
+    const size_t known = utf8_bytes(at);
+    const bool escaped = known == 0 || is_control(at);
+    count = known ? known : 1;
+    if (used + (escaped ? 4 : count) >= size)
       break;
-    at += second;
-    if (control)
-      used += (size_t)snprintf(to + used, size - used, "\\x%02x", *at);
+    if (escaped)
+      used += (size_t)snprintf(to + used, size - used, "\\x%02x", at[count - 1]);
     else
-      to[used++] = (char)*at;
+      memcpy(to + used, at, count);
+    used += escaped ? 0 : count;
   }
   if (size > 0)
     to[used] = '\0';

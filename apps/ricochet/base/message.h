@@ -31,11 +31,11 @@ typedef struct file_place {
  */
 int refuse(message *why, int code, const char *format, ...) __attribute__((format(printf, 3, 4)));
 
-/** EXIT_FILES with "PATH: cannot WHAT: REASON", the reason being that of errno. */
+/** EXIT_FILES with "PATH: cannot WHAT: REASON", the reason being that of errno; EXIT_RUN if it is memory. */
 int refuse_errno(const char *path, const char *what, message *why);
 
 /** Copies text that somebody else wrote so that a terminal shows it and does not obey it: control characters, also
- * those of UTF-8 (C1), as \x1b. @param to  [size], cut to fit */
+ * those of UTF-8 (C1), and bytes that are no UTF-8 as \x1b. @param to  [size], cut to fit, between characters */
 void escape_text(const char *from, char *to, size_t size);
 
 /** Flushes standard output. @returns `code`, or EXIT_FILES when that is 0 and something could not be printed */

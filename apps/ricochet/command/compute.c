@@ -5,7 +5,7 @@
 #include "../run/ranks.h"
 #include "../run/scheduler.h"
 
-enum { MOST_BYTES = 64 << 20 /* of rows, and of ragged tables, that a rank holds, unless one task has more */ };
+enum { MOST_BYTES = 16 << 20 /* of rows, and of ragged tables, that a rank holds, unless one task has more */ };
 
 /* The state of one rank. */
 typedef struct rank {

@@ -176,7 +176,8 @@ static void lay_out_offsets(run *r) {
 
 static int read_extra(void *user, uint64_t first, uint64_t count, unsigned char *rows, message *why) {
   const extra_rows *extra = user;
-  (void)why;
+  if (extra->read)
+    return extra->read(extra->from, first, count, rows, why);
   memcpy(rows, extra->rows + first * extra->layout.row_bytes, count * extra->layout.row_bytes);
   return 0;
 }
@@ -393,6 +394,14 @@ static int start(run *r, int *argc, char ***argv, int code, message *why) {
   return code ? code : not_launched;
 }
 
+static void clear_extras(run *r) {
+  for (size_t k = 0; k < KIND_MOST_EXTRAS; k++) {
+    free(r->extras[k].rows);
+    if (r->extras[k].close)
+      r->extras[k].close(&r->extras[k].from);
+  }
+}
+
 int command_run(int argc, char **argv) {
   run r = {0};
   message why;
@@ -413,8 +422,7 @@ int command_run(int argc, char **argv) {
   stop_hold_signals();
   ranks_finish();
   study_destroy(&r.study);
-  for (size_t k = 0; k < KIND_MOST_EXTRAS; k++)
-    free(r.extras[k].rows);
+  clear_extras(&r);
   free(r.command);
   run_options_clear(&r.options);
   return code || !r.speaks ? code : finish_output(0);

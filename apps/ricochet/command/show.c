@@ -4,6 +4,7 @@
 #include <stdio.h>
 
 #include "../kind/kind.h"
+#include "../result/child.h"
 #include "command.h"
 
 static const char help[] =
@@ -19,18 +20,29 @@ static const char help[] =
     "  --verify            reads everything through its checksums, says whether it is sound\n"
     "  --reference         prints the schema of results, every data set of every kind, in Markdown\n"
     "\n"
+    "The file may be anybody's: another process reads it, within limits, so that a file that makes HDF5 crash is\n"
+    "refused like a damaged one.\n"
+    "\n"
     "Exit codes: 0 done, 2 bad usage, 3 cannot read, damaged or not a result.\n";
 
 typedef enum what { SHOW_CONTENTS, SHOW_CSV, SHOW_VERIFY, SHOW_REFERENCE, SHOW_HELP } what;
 
-static int show(what w, const char *path, const char *group, message *why) {
-  if (w == SHOW_CSV)
-    return result_show_csv(path, group, why);
-  if (w == SHOW_CONTENTS)
-    return result_show(path, kind_card, why);
-  int code = result_verify(path, (ric_poll){0}, why);
+typedef struct request {
+  what what;
+  const char *path, *group;
+} request;
+
+/* In a child: the file may be anybody's. */
+static int show(void *user, FILE *reply, message *why) {
+  const request *r = user;
+  (void)reply; /* all goes to standard output */
+  if (r->what == SHOW_CSV)
+    return result_show_csv(r->path, r->group, why);
+  if (r->what == SHOW_CONTENTS)
+    return result_show(r->path, kind_card, why);
+  const int code = result_verify(r->path, (ric_poll){0}, why);
   if (!code)
-    printf("%s: sound\n", path);
+    printf("%s: sound\n", r->path);
   return code;
 }
 
@@ -41,34 +53,34 @@ int command_show(int argc, char **argv) {
                                           {"help", no_argument, NULL, 'h'},
                                           {NULL, 0, NULL, 0}};
   message why;
-  what w = SHOW_CONTENTS;
-  const char *group = NULL;
+  request r = {.what = SHOW_CONTENTS};
   int code = 0;
   opterr = 0;
   for (int option = 0; !code && option != -1;) {
     char text[3];
     option = getopt_long(argc, argv, "h", options, NULL);
     if (option == 'c') {
-      w = SHOW_CSV;
-      group = optarg;
+      r.what = SHOW_CSV;
+      r.group = optarg;
     } else if (option == 'v')
-      w = SHOW_VERIFY;
+      r.what = SHOW_VERIFY;
     else if (option == 'r')
-      w = SHOW_REFERENCE;
+      r.what = SHOW_REFERENCE;
     else if (option == 'h')
-      w = SHOW_HELP;
+      r.what = SHOW_HELP;
     else if (option != -1)
       code = refuse(&why, EXIT_USAGE, "ricochet show: unknown option %s (see ricochet show --help)",
                     refused_option(argv, text));
   }
-  if (!code && w >= SHOW_REFERENCE) {
-    w == SHOW_HELP ? (void)fputs(help, stdout) : kind_results_reference(stdout);
+  if (!code && r.what >= SHOW_REFERENCE) {
+    r.what == SHOW_HELP ? (void)fputs(help, stdout) : kind_results_reference(stdout);
     return finish_output(0);
   }
   if (!code && argc - optind != 1)
     code = refuse(&why, EXIT_USAGE, "ricochet show: %d files given, expected one (see ricochet show --help)",
                   argc - optind);
+  r.path = argv[optind];
   if (!code)
-    code = show(w, argv[optind], group, &why);
+    code = child_read(r.path, &(child_task){.read = show, .user = &r}, &why);
   return code ? complain(code, &why) : finish_output(0);
 }

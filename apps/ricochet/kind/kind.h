@@ -45,11 +45,14 @@ typedef struct row_source {
   void *user;
 } row_source;
 
-/** Rows of a table that belongs to the study as a whole. */
+/** Rows of a table that belongs to the study as a whole: few of them, or read where they are written. */
 typedef struct extra_rows {
   table layout;
   uint64_t count;
-  unsigned char *rows; /* [count][layout.row_bytes], freed by the caller */
+  unsigned char *rows; /* [count][layout.row_bytes], freed by the caller; NULL: `read` makes them */
+  result_rows read;
+  void *from;
+  void (*close)(void **from); /* frees it */
 } extra_rows;
 
 typedef struct kind kind;
@@ -74,7 +77,7 @@ struct kind {
   int (*evaluate)(worker *w, const kind_plan *plan, task_range tasks, unsigned char *rows, records *tails);
   void (*close)(worker **w);
   /** The study's extra tables, made after all tasks, on every rank alike.
-   *  @param done  rows of all tasks
+   *  @param done  rows of all tasks, borrowed until the extra tables are freed
    *  @param extra  [KIND_MOST_EXTRAS] empty; tables without columns are none
    *  @returns 0, EXIT_RUN, EXIT_FILES; EXIT_STOPPED when the poll stopped it */
   int (*extra)(const study *s, const kind_plan *plan, const row_source *done, ric_poll poll, extra_rows *extra,

@@ -162,6 +162,13 @@ int attribute_text_into(const file_place *at, hid_t object, const char *name, ch
   return code;
 }
 
+int attribute_text_if_there(const file_place *at, hid_t object, const char *name, char *text, size_t size) {
+  const htri_t there = H5Aexists(object, name);
+  if (there < 0)
+    return hdf5_refuse(at, "read the attribute %s", name);
+  return there ? attribute_text_into(at, object, name, text, size) : 0;
+}
+
 static int read_scalar(const file_place *at, hid_t object, const char *name, hid_t memory_type, void *value) {
   int code = 0;
   hid_t attribute = H5I_INVALID_HID, space = H5I_INVALID_HID;
@@ -190,6 +197,8 @@ int attribute_number(const file_place *at, hid_t object, const char *name, doubl
 static herr_t add_values(hid_t attribute, hid_t type, size_t bytes, uint64_t *digest) {
   unsigned char *values = malloc(bytes + 1);
   herr_t status = values && bytes ? H5Aread(attribute, type, values) : values ? 0 : -1;
+  if (!values)
+    hdf5_out_of_memory();
   if (status >= 0)
     *digest = digest_bytes(*digest, values, bytes);
   free(values);

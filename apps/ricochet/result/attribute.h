@@ -39,6 +39,8 @@ int attribute_text(const file_place *at, hid_t object, const char *name, char **
 int attribute_checked_text(const file_place *at, hid_t object, const char *name, char **text);
 /** Into a buffer of `size` bytes, cut to fit. */
 int attribute_text_into(const file_place *at, hid_t object, const char *name, char *text, size_t size);
+/** The same; without such an attribute the text stays as it is. */
+int attribute_text_if_there(const file_place *at, hid_t object, const char *name, char *text, size_t size);
 int attribute_integer(const file_place *at, hid_t object, const char *name, int64_t *value);
 int attribute_number(const file_place *at, hid_t object, const char *name, double *value);
 

@@ -58,31 +58,6 @@ hid_t data_set_type(const column *c) {
 
 /* --- axes --- */
 
-static int fill_scale(const file_place *at, ric_poll stop, hid_t set, const plan_scale *scale) {
-  int code = 0;
-  hid_t space = H5I_INVALID_HID, memory = H5I_INVALID_HID;
-  enum { BLOCK = 8192 };
-  int64_t values[BLOCK];
-  HDF5_TRY(at, space = H5Dget_space(set), "write /%s", scale->name);
-  for (hsize_t first = 0; first < scale->extent; first += BLOCK) {
-    hsize_t count = scale->extent - first < BLOCK ? scale->extent - first : BLOCK;
-    for (hsize_t i = 0; i < count; i++)
-      values[i] = (int64_t)(first + i);
-    HDF5_TRY(at, memory = H5Screate_simple(1, &count, NULL), "write /%s", scale->name);
-    HDF5_TRY(at, H5Sselect_hyperslab(space, H5S_SELECT_SET, &first, NULL, &count, NULL), "write /%s", scale->name);
-    HDF5_TRY(at, H5Dwrite(set, H5T_NATIVE_INT64, memory, space, H5P_DEFAULT, values), "write /%s", scale->name);
-    code = hdf5_close(at, memory, 0);
-    memory = H5I_INVALID_HID;
-    if (!code)
-      code = result_ask(stop, at);
-    if (code)
-      goto out;
-  }
-out:
-  code = hdf5_close(at, memory, code);
-  return hdf5_close(at, space, code);
-}
-
 static int put_description(const file_place *at, hid_t set, const char *units, const char *long_name,
                            const char *source, const char *axes) {
   int code = attribute_put_text(at, set, "units", units);
@@ -95,14 +70,12 @@ static int put_description(const file_place *at, hid_t set, const char *units, c
   return code;
 }
 
-int data_set_create_scale(const file_place *at, ric_poll stop, hid_t file, const plan_scale *scale) {
+int data_set_create_scale(const file_place *at, hid_t file, const plan_scale *scale) {
   int code = 0;
   hid_t space = H5I_INVALID_HID, list = H5I_INVALID_HID, set = H5I_INVALID_HID;
-  const table row = {.row_bytes = sizeof(int64_t)};
-  const column number = {.type = COLUMN_I64};
   char long_name[128];
   uint64_t chunk[PLAN_MOST_AXES];
-  plan_chunk(&row, &number, scale->extent, chunk);
+  plan_chunk(&scale->layout, &scale->layout.columns[0], scale->extent, chunk);
   HDF5_TRY(at, space = H5Screate_simple(1, &(hsize_t){scale->extent}, NULL), "create /%s", scale->name);
   HDF5_TRY(at, list = data_set_properties(1, &(hsize_t){chunk[0]}), "create /%s", scale->name);
   HDF5_TRY(at, set = H5Dcreate2(file, scale->name, H5T_STD_I64LE, space, H5P_DEFAULT, list, H5P_DEFAULT), "create /%s",
@@ -110,8 +83,6 @@ int data_set_create_scale(const file_place *at, ric_poll stop, hid_t file, const
   HDF5_TRY(at, H5DSset_scale(set, scale->name), "create /%s", scale->name);
   snprintf(long_name, sizeof long_name, "index along the axis %s", scale->name);
   code = put_description(at, set, "1", long_name, "counts from 0", scale->name);
-  if (!code)
-    code = fill_scale(at, stop, set, scale);
 out:
   code = hdf5_close(at, set, code);
   code = hdf5_close(at, list, code);

@@ -49,7 +49,11 @@ static int add_scale(plan *p, const char *name, uint64_t extent, message *why) {
     return refuse(why, EXIT_RUN, "axis %s = %llu in one column, %llu in another, expected one extent", name,
                   (unsigned long long)scale->extent, (unsigned long long)extent);
   }
-  p->scales[p->scale_count++] = (plan_scale){name, extent};
+  plan_scale *more = realloc(p->scales, (p->scale_count + 1) * sizeof *more);
+  if (!more)
+    return refuse(why, EXIT_RUN, "no memory for axis %s", name);
+  p->scales = more;
+  p->scales[p->scale_count++] = (plan_scale){.name = name, .extent = extent};
   return 0;
 }
 
@@ -75,6 +79,33 @@ static int check_names(const plan *p, message *why) {
   return 0;
 }
 
+static int read_scale(void *user, uint64_t first, uint64_t count, unsigned char *rows, message *why) {
+  (void)user;
+  (void)why;
+  for (uint64_t i = 0; i < count; i++) {
+    const int64_t value = (int64_t)(first + i);
+    memcpy(rows + i * sizeof value, &value, sizeof value);
+  }
+  return 0;
+}
+
+/* The tables of the scales, behind the others. */
+static int lay_out_scales(plan *p, message *why) {
+  result_table *more = realloc(p->tables, (p->table_count + p->scale_count) * sizeof *more);
+  if (!more)
+    return refuse(why, EXIT_RUN, "no memory for the axes");
+  p->tables = more;
+  p->stored_count = p->table_count;
+  for (size_t i = 0; i < p->scale_count; i++) {
+    plan_scale *scale = &p->scales[i];
+    scale->layout = (table){.group = ".", .row_axis = scale->name, .column_count = 1};
+    scale->layout.columns[0] = (column){.name = scale->name, .type = COLUMN_I64};
+    table_lay_out(&scale->layout);
+    p->tables[p->stored_count++] = (result_table){.layout = &scale->layout, .rows = scale->extent, .read = read_scale};
+  }
+  return 0;
+}
+
 /* --- the plan --- */
 
 int plan_init(plan *p, const char *path, const result_header *header, const result_table *tables, size_t table_count,
@@ -82,8 +113,7 @@ int plan_init(plan *p, const char *path, const result_header *header, const resu
   *p = (plan){.header = header};
   p->partial = malloc(strlen(path) + sizeof ".tmp");
   p->tables = calloc(table_count + 1, sizeof *p->tables);
-  p->scales = calloc(1 + (table_count + 1) * (1 + COLUMN_MOST_AXES * TABLE_MAX_COLUMNS), sizeof *p->scales);
-  if (!p->partial || !p->tables || !p->scales)
+  if (!p->partial || !p->tables)
     return refuse(why, EXIT_RUN, "%s: out of memory", path);
   strcpy(p->partial, path);
   strcat(p->partial, ".tmp");
@@ -93,7 +123,9 @@ int plan_init(plan *p, const char *path, const result_header *header, const resu
   int code = add_scale(p, "task", study_tasks(header->study), why);
   for (size_t i = 0; !code && i < p->table_count; i++)
     code = add_scales_of(p, &p->tables[i], why);
-  return code ? code : check_names(p, why);
+  if (!code)
+    code = check_names(p, why);
+  return code ? code : lay_out_scales(p, why);
 }
 
 void plan_clear(plan *p) {
@@ -156,7 +188,7 @@ static uint64_t column_bytes_at_most(const table *t, const column *c, uint64_t r
 
 uint64_t plan_bytes(const plan *p) {
   uint64_t bytes = 0;
-  for (size_t i = 0; i < p->table_count; i++) {
+  for (size_t i = 0; i < p->stored_count; i++) {
     const result_table *t = &p->tables[i];
     for (size_t k = 0; k < t->layout->column_count; k++)
       bytes += column_bytes_at_most(t->layout, &t->layout->columns[k], t->rows);

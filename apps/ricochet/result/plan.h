@@ -14,18 +14,20 @@ enum {
   PLAN_MOST_AXES = 1 + COLUMN_MOST_AXES
 };
 
-/** An axis: the data set `/name` with the values 0 .. extent - 1. */
+/** An axis: the data set `/name` with the values 0 .. extent - 1, a table of one column that ranks write like others.
+ */
 typedef struct plan_scale {
   const char *name;
   uint64_t extent;
+  table layout;
 } plan_scale;
 
 typedef struct plan {
   const result_header *header;
   ric_poll stop;        /* asked while the file is written; set by the writer */
   char *partial;        /* path of the file while it is written */
-  result_table *tables; /* [table_count] the caller's, then /sweep */
-  size_t table_count;
+  result_table *tables; /* [stored_count] the caller's and /sweep, [table_count] in all; then those of the scales */
+  size_t table_count, stored_count;
   table sweep;
   plan_scale *scales; /* [scale_count] distinct axes, "task" first */
   size_t scale_count;

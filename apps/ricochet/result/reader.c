@@ -16,8 +16,7 @@
 static int check_creator(const file_place *at, hid_t file) {
   char creator[64] = "";
   int64_t version = 0;
-  htri_t marked = H5Aexists(file, "creator");
-  int code = marked > 0 ? attribute_text_into(at, file, "creator", creator, sizeof creator) : 0;
+  int code = attribute_text_if_there(at, file, "creator", creator, sizeof creator);
   if (code)
     return code;
   if (strcmp(creator, RESULT_CREATOR) != 0)
@@ -41,7 +40,9 @@ int reader_open(const file_place *at, const char *path, reader_handle *file) {
   struct stat about;
   htri_t known;
   *file = H5I_INVALID_HID;
-  hdf5_quiet();
+  code = hdf5_start(at);
+  if (code)
+    return code;
   if (stat(path, &about) != 0)
     return refuse(at->why, EXIT_FILES, "%s: cannot open it: %s", at->path, strerror(errno));
   if (!S_ISREG(about.st_mode))
@@ -60,6 +61,15 @@ out:
 }
 
 /* --- names --- */
+
+static uint64_t file_bytes_of(hid_t object) {
+  hsize_t bytes = 0;
+  const hid_t file = H5Iget_file_id(object);
+  if (file < 0 || H5Fget_filesize(file, &bytes) < 0)
+    bytes = 0;
+  (void)H5Fclose(file);
+  return bytes;
+}
 
 static bool has_controls(const char *name) {
   char shown[4096];
@@ -85,15 +95,25 @@ static int link_name(const file_place *at, hid_t group, hsize_t i, char **name) 
   return code;
 }
 
+/* Opens what a link leads to: an object of this file, which no result refers to in any other way. */
+static int open_linked(const file_place *at, hid_t group, const char *name, hid_t *object) {
+  H5L_info_t link;
+  if (H5Lget_info(group, name, &link, H5P_DEFAULT) < 0)
+    return hdf5_refuse(at, "open %s", name);
+  if (link.type != H5L_TYPE_HARD)
+    return refuse(at->why, EXIT_FILES, "%s: %s is a link to somewhere else, expected an object", at->path, name);
+  *object = H5Oopen(group, name, H5P_DEFAULT);
+  return *object < 0 ? hdf5_refuse(at, "open %s", name) : 0;
+}
+
 /* Appends the i-th link when it leads to an object of the type asked for. */
 static int list_link(const file_place *at, hid_t group, hsize_t i, H5I_type_t type, reader_names *names) {
   char *name = NULL;
+  hid_t object = H5I_INVALID_HID;
   int code = link_name(at, group, i, &name);
   if (code)
     return code;
-  hid_t object = H5Oopen(group, name, H5P_DEFAULT);
-  if (object < 0)
-    code = hdf5_refuse(at, "open %s", name);
+  code = open_linked(at, group, name, &object);
   if (object >= 0 && H5Iget_type(object) == type)
     names->at[names->count++] = name;
   else
@@ -107,6 +127,8 @@ int reader_list(const file_place *at, reader_handle group, bool groups, reader_n
   *names = (reader_names){0};
   if (H5Gget_info(group, &info) < 0)
     return hdf5_refuse(at, "list it");
+  if (info.nlinks > file_bytes_of(group))
+    return refuse(at->why, EXIT_FILES, "%s: damaged: a group claims more objects than the file can hold", at->path);
   names->at = calloc((size_t)info.nlinks + 1, sizeof *names->at);
   if (!names->at)
     return refuse(at->why, EXIT_RUN, "%s: out of memory", at->path);
@@ -195,24 +217,26 @@ out:
   return hdf5_close(at, type, code);
 }
 
-static uint64_t file_bytes_of(hid_t set) {
-  hsize_t bytes = 0;
-  const hid_t file = H5Iget_file_id(set);
-  if (file < 0 || H5Fget_filesize(file, &bytes) < 0)
-    bytes = 0;
-  (void)H5Fclose(file);
-  return bytes;
+/* Values can also be in other files, which HDF5 would open. */
+static int check_inside(const file_place *at, hid_t set, const char *name) {
+  int code = 0;
+  hid_t list = H5I_INVALID_HID;
+  HDF5_TRY(at, list = H5Dget_create_plist(set), "read %s", name);
+  if (H5Pget_layout(list) == H5D_VIRTUAL || H5Pget_external_count(list) > 0)
+    code = refuse(at->why, EXIT_FILES, "%s: the values of %s are in another file", at->path, name);
+out:
+  return hdf5_close(at, list, code);
 }
 
-int reader_check_extent(const file_place *at, reader_handle set, const char *name, int rank, const uint64_t *shape,
-                        size_t value_bytes) {
+int reader_check_storage(const file_place *at, reader_handle set, const char *name, int rank, const uint64_t *shape,
+                         size_t value_bytes) {
   enum { TIGHTEST = 1032 };
   uint64_t bytes = value_bytes, most;
   bool fits = !__builtin_mul_overflow(file_bytes_of(set), TIGHTEST, &most);
   for (int i = 0; i < rank; i++)
     fits = fits && (shape[i] == 0 || !__builtin_mul_overflow(bytes, shape[i], &bytes));
   if (fits && bytes <= most)
-    return 0;
+    return check_inside(at, set, name);
   return refuse(at->why, EXIT_FILES, "%s: damaged: %s claims more values than the file can hold", at->path, name);
 }
 
@@ -224,13 +248,9 @@ static int read_shape(const file_place *at, reader_set *s) {
   HDF5_TRY(at, s->rank = H5Sget_simple_extent_dims(space, shape, NULL), "read the shape of %s", s->name);
   for (int i = 0; i < s->rank; i++)
     s->shape[i] = shape[i];
-  code = reader_check_extent(at, s->id, s->name, s->rank, s->shape, s->value_bytes);
+  code = reader_check_storage(at, s->id, s->name, s->rank, s->shape, s->value_bytes);
 out:
   return hdf5_close(at, space, code);
-}
-
-static int read_name(const file_place *at, hid_t set, const char *attribute, char *name, size_t size) {
-  return H5Aexists(set, attribute) > 0 ? attribute_text_into(at, set, attribute, name, size) : 0;
 }
 
 static int open_set(const file_place *at, hid_t group, reader_set *s) {
@@ -247,8 +267,8 @@ static int open_set(const file_place *at, hid_t group, reader_set *s) {
   if (!code)
     code = attribute_text_into(at, s->id, "long_name", s->long_name, sizeof s->long_name);
   if (!code)
-    code = read_name(at, s->id, "parameter", s->parameter, sizeof s->parameter);
-  return code ? code : read_name(at, s->id, "observed", s->observed, sizeof s->observed);
+    code = attribute_text_if_there(at, s->id, "parameter", s->parameter, sizeof s->parameter);
+  return code ? code : attribute_text_if_there(at, s->id, "observed", s->observed, sizeof s->observed);
 }
 
 static int open_sets(const file_place *at, hid_t group, reader_group *g) {
@@ -422,12 +442,14 @@ void reader_value(const reader_set *s, const unsigned char *value, int digits, c
 }
 
 int reader_cell(const file_place *at, const reader_set *s, uint64_t row, int digits, char *text, size_t size) {
-  unsigned char *value = s && s->rank == 1 && row < s->shape[0] ? calloc(1, s->value_bytes + 1) : NULL;
-  int code = 0;
   *text = '\0';
-  if (value)
-    code = reader_rows(at, s, row, 1, value);
-  if (value && !code)
+  if (!s || s->rank != 1 || row >= s->shape[0])
+    return 0;
+  unsigned char *value = calloc(1, s->value_bytes + 1);
+  if (!value)
+    return refuse(at->why, EXIT_RUN, "%s: out of memory", at->path);
+  const int code = reader_rows(at, s, row, 1, value);
+  if (!code)
     reader_value(s, value, digits, text, size);
   free(value);
   return code;

@@ -65,11 +65,11 @@ bool reader_has(reader_handle file, const char *name);
 /** The data set of a name, NULL when the group has none. */
 const reader_set *reader_find(const reader_group *g, const char *name);
 
-/** Refuses a data set that claims more values than its file can hold (no filter packs more tightly than deflate, 1032
- * to 1), so that whatever is multiplied and allocated for it stays in proportion to the file. Every set of a
- * reader_group has passed. @param shape  [rank] */
-int reader_check_extent(const file_place *at, reader_handle set, const char *name, int rank, const uint64_t *shape,
-                        size_t value_bytes);
+/** Refuses a data set with values in another file, or that claims more values than its file can hold (no filter packs
+ * more tightly than deflate, 1032 to 1), so that whatever is multiplied and allocated for it stays in proportion to the
+ * file. Every set of a reader_group has passed. @param shape  [rank] */
+int reader_check_storage(const file_place *at, reader_handle set, const char *name, int rank, const uint64_t *shape,
+                         size_t value_bytes);
 
 /** Name of the parameter of a set that holds values of one; earlier results have it as the long name. */
 const char *reader_parameter(const reader_set *s);

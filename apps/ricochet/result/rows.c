@@ -126,7 +126,7 @@ int rows_write(const plan *p, const chunk_places *places, const file_place *at, 
     return refuse_errno(at->path, "open it", at->why);
   int code = 0;
   written->record_bytes = sizeof(uint64_t);
-  for (size_t i = 0; !code && i < p->table_count; i++) {
+  for (size_t i = 0; !code && i < p->stored_count; i++) {
     block b;
     code = block_allocate(&b, p, at, &p->tables[i]);
     for (uint64_t k = rank; !code && k * b.height < b.from->rows; k += ranks)
@@ -221,7 +221,7 @@ int rows_check(const plan *p, const file_place *at, const records *written) {
   uint64_t next = 0;
   hid_t file = H5I_INVALID_HID;
   HDF5_TRY(at, file = H5Fopen(p->partial, H5F_ACC_RDONLY, H5P_DEFAULT), "open it");
-  for (size_t i = 0; !code && i < p->table_count; i++) {
+  for (size_t i = 0; !code && i < p->stored_count; i++) {
     block b;
     code = block_allocate(&b, p, at, &p->tables[i]);
     if (!code)

@@ -249,7 +249,7 @@ static int put_run(const file_place *at, hid_t file, const result_header *header
 static int fill(const file_place *at, hid_t file, const plan *p) {
   int code = put_root(at, file, p->header);
   for (size_t i = 0; !code && i < p->scale_count; i++)
-    code = data_set_create_scale(at, p->stop, file, &p->scales[i]);
+    code = data_set_create_scale(at, file, &p->scales[i]);
   for (size_t i = 0; !code && i < p->table_count; i++)
     code = create_table(at, file, &p->tables[i]);
   if (!code)
@@ -460,7 +460,7 @@ static int lay_out_chunks(const plan *p, const file_place *at, const skeleton_im
   HDF5_TRY(at, driver = layout_driver(p->partial, access), "lay it out");
   HDF5_TRY(at, H5Pset_driver(access, driver, NULL), "lay it out");
   HDF5_TRY(at, file = H5Fopen(p->partial, H5F_ACC_RDWR, access), "lay it out");
-  for (size_t i = 0; i < p->table_count; i++)
+  for (size_t i = 0; i < p->stored_count; i++)
     for (size_t k = 0; !code && k < p->tables[i].layout->column_count; k++, set++)
       if (p->tables[i].rows > 0 && column_values(&p->tables[i].layout->columns[k]) > 0) {
         code = result_ask(p->stop, at);

@@ -114,9 +114,13 @@ static int check_values(const file_place *at, hid_t file) {
 
 /* --- checking --- */
 
-static int check_one(const file_place *at, FILE *from, const heap *h) {
+/* @param end  of the file */
+static int check_one(const file_place *at, FILE *from, off_t end, const heap *h) {
   bool good = false;
-  unsigned char *bytes = h->address >= 0 && h->size > 0 ? malloc((size_t)h->size) : NULL;
+  const bool possible = h->address >= 0 && h->size > 0 && h->size <= end;
+  unsigned char *bytes = possible ? malloc((size_t)h->size) : NULL;
+  if (possible && !bytes)
+    return refuse(at->why, EXIT_RUN, "%s: out of memory", at->path);
   if (bytes && fseeko(from, (off_t)h->address, SEEK_SET) == 0)
     good = fread(bytes, (size_t)h->size, 1, from) == 1 && digest_of(bytes, (size_t)h->size) == h->digest;
   free(bytes);
@@ -128,10 +132,11 @@ static int check_one(const file_place *at, FILE *from, const heap *h) {
 static int check_all(const file_place *at, const char *path, const heap *heaps, size_t count) {
   FILE *from = fopen(path, "rb");
   if (!from)
-    return refuse(at->why, EXIT_FILES, "%s: cannot open it again", at->path);
+    return refuse_errno(at->path, "open it again", at->why);
   int code = 0;
+  const off_t end = fseeko(from, 0, SEEK_END) == 0 ? ftello(from) : 0;
   for (size_t i = 0; !code && i < count; i++)
-    code = check_one(at, from, &heaps[i]);
+    code = check_one(at, from, end, &heaps[i]);
   fclose(from); /* only read */
   return code;
 }
@@ -145,7 +150,11 @@ static int heap_check(const file_place *at, hid_t file, const char *path) {
   HDF5_TRY(at, space = H5Aget_space(attribute), "read %s", attribute_name);
   HDF5_TRY(at, values = H5Sget_simple_extent_npoints(space), "read %s", attribute_name);
   heaps = calloc((size_t)values / 3 + 1, sizeof *heaps);
-  if (!heaps || values % 3 != 0) {
+  if (!heaps) {
+    code = refuse(at->why, EXIT_RUN, "%s: out of memory", at->path);
+    goto out;
+  }
+  if (values % 3 != 0) {
     code = refuse(at->why, EXIT_FILES, "%s: %s has %lld values, expected a multiple of 3", at->path, attribute_name,
                   (long long)values);
     goto out;
@@ -165,6 +174,8 @@ static herr_t read_values(hid_t attribute, hid_t type) {
   hsize_t bytes = H5Aget_storage_size(attribute);
   unsigned char *values = malloc(bytes > 0 ? (size_t)bytes : 1);
   herr_t status = values ? H5Aread(attribute, type, values) : -1;
+  if (!values)
+    hdf5_out_of_memory();
   free(values);
   return status;
 }
@@ -207,7 +218,7 @@ typedef struct verifier {
   const file_place *at;
   hid_t file;
   ric_poll stop;
-  bool with_rows; /* or only the axes, which are the data sets in the root */
+  bool with_rows; /* or only what surrounds them */
 } verifier;
 
 /* --- data --- */
@@ -308,12 +319,12 @@ static int check_set(const verifier *v, const char *name) {
   HDF5_TRY(v->at, s.rank = H5Sget_simple_extent_dims(s.space, s.shape, NULL), "read %s", name);
   for (int i = 0; i < s.rank; i++)
     shape[i] = s.shape[i];
-  code = reader_check_extent(v->at, s.set, name, s.rank, shape, H5Tget_size(s.type));
+  code = reader_check_storage(v->at, s.set, name, s.rank, shape, H5Tget_size(s.type));
   if (!code)
     code = check_storage(v, name, &s);
   if (!code)
     code = check_axes(v, name, &s);
-  if (!code && (v->with_rows || !strchr(name, '/')))
+  if (!code && v->with_rows)
     code = read_slabs(v, name, &s);
 out:
   code = hdf5_close(v->at, s.space, code);

@@ -8,8 +8,8 @@
 /** Checks a file: all metadata (data sets chunked with a checksum, every axis attached to its scale), and the data of
  * the axes and of all tables, read through their checksums.
  *  @param path  of the file to open; `at` names the one for messages
- *  @param expected  the plan that it was written by: data sets must have its shapes, and the rows of tables, which
- *         rows_check has read, are not read again; NULL if unknown
+ *  @param expected  the plan that it was written by: data sets must have its shapes, and their data, which rows_check
+ *         has read, are not read again; NULL if unknown
  *  @param stop  asked for each piece of data */
 int verify_file(const file_place *at, const char *path, const plan *expected, ric_poll stop);
 

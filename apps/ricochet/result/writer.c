@@ -129,8 +129,9 @@ int result_write(const char *path, const result_header *header, const result_tab
   if (hooks)
     w.hooks = *hooks;
   const int rank = ranks_rank();
-  hdf5_quiet();
-  int code = ranks_agree(plan_init(&w.plan, path, header, tables, table_count, why), why);
+  int code = ranks_agree(hdf5_start(&w.at), why);
+  if (!code)
+    code = ranks_agree(plan_init(&w.plan, path, header, tables, table_count, why), why);
   w.plan.stop = w.hooks.stop;
   if (!code)
     code = ranks_agree(rank == 0 ? make_file(&w) : 0, why);

@@ -25,21 +25,19 @@ struct lock {
   char path[PATH_MAX];
 };
 
-static lock *lock_allocate(const char *folder, message *why) {
+static int lock_allocate(const char *folder, lock **out, message *why) {
   lock *l = malloc(sizeof *l);
-  if (!l) {
-    refuse(why, EXIT_FILES, "%s: out of memory for the lock", folder);
-    return NULL;
-  }
+  if (!l)
+    return refuse(why, EXIT_RUN, "%s: out of memory for the lock", folder);
   l->fd = -1;
   const int length = snprintf(l->path, sizeof l->path, "%s/lock", folder);
   if (length < 0 || (size_t)length >= sizeof l->path) {
-    refuse(why, EXIT_FILES, "%s: the name is too long", folder);
     free(l);
-    return NULL;
+    return refuse(why, EXIT_FILES, "%s: the name is too long", folder);
   }
   memcpy(l->folder, folder, strlen(folder) + 1);
-  return l;
+  *out = l;
+  return 0;
 }
 
 static void lock_close(lock *l) {
@@ -136,10 +134,11 @@ static int wait_for_whole(lock *l, double wait_seconds, message *why) {
 
 int lock_take(const char *folder, double wait_seconds, lock **out, message *why) {
   *out = NULL;
-  lock *l = lock_allocate(folder, why);
-  if (!l)
-    return EXIT_FILES;
-  int code = wait_for_whole(l, wait_seconds, why);
+  lock *l = NULL;
+  int code = lock_allocate(folder, &l, why);
+  if (code)
+    return code;
+  code = wait_for_whole(l, wait_seconds, why);
   if (!code)
     code = write_holder(l, why);
   if (!code && set_lock(l, F_UNLCK, 1, 0)) /* the bytes of the other ranks, which join now */
@@ -166,10 +165,11 @@ static int join(lock *l, int rank, message *why) {
 
 int lock_join(const char *folder, int rank, lock **out, message *why) {
   *out = NULL;
-  lock *l = lock_allocate(folder, why);
-  if (!l)
-    return EXIT_FILES;
-  const int code = join(l, rank, why);
+  lock *l = NULL;
+  int code = lock_allocate(folder, &l, why);
+  if (code)
+    return code;
+  code = join(l, rank, why);
   if (code)
     lock_release(&l, 0);
   *out = l;

@@ -16,11 +16,11 @@ typedef struct lock lock;
  *  A file that was removed or replaced while waiting is opened anew. Faults that waiting cannot remove (a folder that
  *  cannot be written, a file system without locks) are refused at once.
  *  @param wait_seconds  0 for one attempt
- *  @returns 0 or EXIT_FILES, naming the holder; *out is NULL then. */
+ *  @returns 0 or EXIT_FILES, naming the holder; EXIT_RUN out of memory; *out is NULL then. */
 int lock_take(const char *folder, double wait_seconds, lock **out, message *why);
 
 /** Locks the byte of another rank (>= 1) of the same run, after lock_take on rank 0; does not wait.
- *  @returns 0 or EXIT_FILES; *out is NULL then. */
+ *  @returns 0, EXIT_FILES, or EXIT_RUN out of memory; *out is NULL then. */
 int lock_join(const char *folder, int rank, lock **out, message *why);
 
 /** Whether the path still names the locked file: a run that has lost the lock must not commit.

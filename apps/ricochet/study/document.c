@@ -229,7 +229,7 @@ static int read_text(const char *path, int handle, ric_poll stop, char **text, s
   const int status = read_bytes(handle, stop, bytes, STUDY_MAX_BYTES + 1, length);
   int code = 0;
   if (status < 0)
-    code = refuse(why, EXIT_FILES, "%s: cannot be read: %s", path, strerror(errno));
+    code = refuse_errno(path, "be read", why);
   else if (status > 0)
     code = refuse(why, EXIT_STOPPED, "%s: stopped before it was read", path);
   else if (*length > STUDY_MAX_BYTES)
@@ -247,7 +247,7 @@ static int read_text(const char *path, int handle, ric_poll stop, char **text, s
 int study_read_file(const char *path, ric_poll stop, char **text, size_t *length, message *why) {
   const int handle = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC); /* a named pipe without a writer opens, too */
   if (handle < 0)
-    return refuse(why, EXIT_FILES, "%s: cannot be opened: %s", path, strerror(errno));
+    return refuse_errno(path, "be opened", why);
   const int code = read_text(path, handle, stop, text, length, why);
   close(handle); /* only read */
   return code;

@@ -48,6 +48,10 @@ RIC_API void ric_basin_destroy(ric_basin **basin);
  *  @returns RIC_EINVAL for a periodic run without `lowest`; RIC_ENOMEM */
 RIC_API ric_status ric_basin_add(ric_basin *basin, const ric_attractor *run, int64_t *label, ric_error *error);
 
+/** The label of a run that has been added: the same as then, however many were added after it. Nobody needs to store
+ *  labels. */
+RIC_API int64_t ric_basin_label(const ric_basin *basin, const ric_attractor *run);
+
 /** Number of attractors, in the order in which they were found. */
 RIC_API size_t ric_basin_count(const ric_basin *basin);
 /** @param index  < ric_basin_count */

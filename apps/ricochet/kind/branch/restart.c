@@ -7,6 +7,7 @@
 
 #include "branch.h"
 #include "kind/family/family_check.h"
+#include "result/child.h"
 #include "result/reader.h"
 
 /* --- a motion of a result --- */
@@ -179,9 +180,8 @@ static int read_motion(const stored_file *f, const stored_where *where, stored_m
   return code ? code : read_swept(f, where->task, m);
 }
 
-static int read_stored_motion(const stored_where *where, stored_motion *m, message *why) {
+static int read_file(const stored_where *where, stored_motion *m, message *why) {
   stored_file f = {.at = {where->path, why}, .what = where->special ? "special" : "point"};
-  *m = (stored_motion){0};
   int code = reader_open(&f.at, where->path, &f.file);
   if (code)
     return code;
@@ -201,6 +201,59 @@ static void stored_motion_clear(stored_motion *m) {
   free(m->v);
   free(m->impacts);
   *m = (stored_motion){0};
+}
+
+/* --- a motion that a child reads: the file may be anybody's --- */
+
+typedef struct reading {
+  const stored_where *where;
+  stored_motion *motion;
+} reading;
+
+static int send_motion(void *user, FILE *reply, message *why) {
+  const reading *r = user;
+  stored_motion m = {0};
+  int code = read_file(r->where, &m, why);
+  if (!code) { /* a failed write shows when the reply is closed */
+    fwrite(&m, sizeof m, 1, reply);
+    fwrite(m.q, sizeof *m.q, m.particles, reply);
+    fwrite(m.v, sizeof *m.v, m.particles, reply);
+    fwrite(m.impacts, sizeof *m.impacts, m.impact_count, reply);
+  }
+  stored_motion_clear(&m);
+  return code;
+}
+
+/* A list of the reply; NULL where it is cut short. */
+static void *take_list(FILE *reply, size_t count, size_t bytes) {
+  void *list = count < SIZE_MAX ? calloc(count + 1, bytes) : NULL;
+  if (list && fread(list, bytes, count, reply) == count)
+    return list;
+  free(list);
+  return NULL;
+}
+
+static int take_motion(void *user, FILE *reply, message *why) {
+  const reading *r = user;
+  stored_motion *m = r->motion;
+  const bool whole = fread(m, sizeof *m, 1, reply) == 1;
+  if (!whole)
+    *m = (stored_motion){0};
+  m->q = m->v = NULL; /* those were addresses of the child */
+  m->impacts = NULL;
+  for (size_t i = 0; i < MOST_NUMBERS; i++)
+    m->numbers[i].name[sizeof m->numbers[i].name - 1] = '\0';
+  if (whole && m->number_count <= MOST_NUMBERS && (m->q = take_list(reply, m->particles, sizeof *m->q)) &&
+      (m->v = take_list(reply, m->particles, sizeof *m->v)) &&
+      (m->impacts = take_list(reply, m->impact_count, sizeof *m->impacts)))
+    return 0;
+  return refuse(why, EXIT_RUN, "%s: no memory for its motion, or only a part of it arrived", r->where->path);
+}
+
+static int read_stored_motion(const stored_where *where, stored_motion *m, message *why) {
+  reading r = {where, m};
+  *m = (stored_motion){0};
+  return child_read(where->path, &(child_task){.read = send_motion, .take = take_motion, .user = &r}, why);
 }
 
 /* --- assignments to the study --- */

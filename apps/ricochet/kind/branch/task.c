@@ -84,7 +84,7 @@ static void keep_reason(char *to, const char *reason) {
 static unsigned char *add_record(branch_rows *w, size_t which) {
   unsigned char *record = records_add(&w->tails[which]);
   if (!record)
-    w->status = RIC_ENOMEM;
+    w->status = ric_fail(NULL, RIC_ENOMEM, "no memory for a record");
   return record;
 }
 
@@ -321,7 +321,7 @@ static ric_status follow(branch_rows *w, family_task *t) {
   if (status != RIC_OK)
     return add_failed_start(w, NULL, status, &error, CURVE_FAILED_START);
   double *z = calloc(ric_shooting_unknowns(ric_family_shooting(t->family.family)), sizeof *z);
-  status = z ? explore(w, t, z) : RIC_ENOMEM;
+  status = z ? explore(w, t, z) : ric_fail(NULL, RIC_ENOMEM, "no memory for a start");
   free(z);
   return status;
 }
@@ -339,19 +339,11 @@ static void fill_row(const branch_rows *w, unsigned char *row) {
 static int branch_evaluate(worker *w, const kind_plan *plan, task_range tasks, unsigned char *row, records *tails) {
   branch_rows found = {
       .b = &w->task.family, .plan = plan, .tails = tails, .states = value_flag(w->task.values, KEY_BRANCH_STATES)};
-  uint64_t before[BRANCH_TAILS_WITH_CURVES];
-  for (size_t k = 0; k < plan->tail_count; k++)
-    before[k] = tails[k].count;
   study_values_at(w->task.values, tasks.first);
   ric_status status = follow(&found, &w->task);
   family_task_close(&w->task);
   if (status == RIC_ESTOPPED)
     return -1;
-  if (status != RIC_OK) { /* out of memory: all records of the task are dropped */
-    for (size_t k = 0; k < plan->tail_count; k++)
-      records_cut(&tails[k], before[k]);
-    found = (branch_rows){.plan = plan, .outcome = CURVE_REFUSED, .reason = "no memory for its points"};
-  }
   fill_row(&found, row);
   return 0;
 }

@@ -70,7 +70,7 @@ int curve_trace_add(curve_trace *t, double parameter, double second, double peri
     return 1;
   unsigned char *record = records_add(t->points);
   if (!record) {
-    t->status = RIC_ENOMEM;
+    t->status = ric_fail(NULL, RIC_ENOMEM, "no memory for a point");
     return 1;
   }
   *point = (curve_point){t->special, t->part, value, second, period};
@@ -82,7 +82,7 @@ int curve_trace_add(curve_trace *t, double parameter, double second, double peri
 static ric_status add_end(const curve_trace *t, int outcome, const char *reason) {
   unsigned char *record = records_add(t->ends);
   if (!record)
-    return RIC_ENOMEM;
+    return ric_fail(NULL, RIC_ENOMEM, "no memory for an end");
   row_store(
       t->end_layout, record,
       &(curve_end){

@@ -74,7 +74,7 @@ static ric_status compute(family_task *t, grazing_task *g, records *tails) {
     return grazing_end(g, GRAZING_FAILED_START, status, &error);
   ric_shooting *shooting = ric_family_shooting(g->b->family);
   double *z = calloc(ric_shooting_unknowns(shooting), sizeof *z);
-  status = z ? ric_grazing_init(&g->grazing, shooting, &error) : RIC_ENOMEM;
+  status = z ? ric_grazing_init(&g->grazing, shooting, &error) : ric_fail(&error, RIC_ENOMEM, "no memory for a start");
   if (status == RIC_OK)
     status = follow(t, g, z, tails);
   ric_grazing_clear(&g->grazing);

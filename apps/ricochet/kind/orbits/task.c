@@ -32,7 +32,7 @@ static ric_orbit_method method_of(const study_values *v) {
 static int plan_memory(const study *s, const study_values *v, kind_plan *plan, message *why) {
   chain_model model = {0};
   ric_pattern *pattern = NULL;
-  ric_error error;
+  ric_error error = {0};
   /* Before anything large is allocated: four state arrays alone are 32 bytes per particle. */
   int code = machine_refuse_size(s, "an orbit",
                                  33 * value_number(v, KEY_MODEL_PARTICLES, 0) + (double)plan->rows.row_bytes, why);
@@ -46,7 +46,8 @@ static int plan_memory(const study *s, const study_values *v, kind_plan *plan, m
       plan->memory += TRAJECTORY_PARTICLE_BYTES * value_number(v, KEY_MODEL_PARTICLES, 0);
     plan->memory += stability_bytes(v);
     code = machine_refuse_size(s, "an orbit", plan->memory, why);
-  }
+  } else if (error.status == RIC_ENOMEM)
+    code = refuse(why, EXIT_RUN, "%s: %s", study_name(s), error.message);
   ric_pattern_destroy(&pattern);
   chain_model_clear(&model);
   return code;

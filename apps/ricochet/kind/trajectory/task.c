@@ -119,14 +119,16 @@ static int plan_memory(const study *s, const study_values *v, kind_plan *plan, m
   int code = machine_refuse_size(s, what, plan->memory, why);
   chain_model chain = {0};
   ric_pattern *pattern = NULL;
+  ric_error error = {0};
   if (code || !value_present(v, KEY_ORBIT_PERIOD))
     return code;
   if (chain_model_init(&chain, v) != 0)
     code = refuse(why, EXIT_RUN, "%s: no memory for the floors", study_name(s));
-  else if (pattern_read(v, &pattern, NULL) == RIC_OK) {
+  else if (pattern_read(v, &pattern, &error) == RIC_OK) {
     plan->memory += ric_orbit_bytes(&chain.chain, pattern, RIC_METHOD_IMPULSE);
     code = machine_refuse_size(s, what, plan->memory, why);
-  }
+  } else if (error.status == RIC_ENOMEM)
+    code = refuse(why, EXIT_RUN, "%s: %s", study_name(s), error.message);
   ric_pattern_destroy(&pattern);
   chain_model_clear(&chain);
   return code;
@@ -301,10 +303,10 @@ static ric_status move(worker *w, observation *seen, ric_run *did, verdict *foun
   ric_system_destroy(&system);
   if (status == RIC_ESTOPPED)
     return status;
+  if (status == RIC_OK && (seen->no_memory || seen->converged.no_memory))
+    status = ric_fail(&error, RIC_ENOMEM, "no memory for the events");
   if (status != RIC_OK)
     note_outcome(found, TRAJECTORY_REFUSED, error.message);
-  else if (seen->no_memory || seen->converged.no_memory)
-    note_outcome(found, TRAJECTORY_REFUSED, "no memory for the events");
   else
     note_outcome(found, (int)did->outcome, did->reason);
   return RIC_OK;
