@@ -13,9 +13,9 @@ from pathlib import Path
 
 FUNCTION = re.compile(
     r"(?:/\*\*(?P<doc>(?:(?!\*/).)*)\*/\s*)?^RIC_API\s+(?P<result>[^;({]*?)(?P<name>\bric_\w+)"
-    r"\((?P<parameters>(?:[^()]|\((?:[^()])*\))*)\)", re.S | re.M)
-REMARK = re.compile(r"/\*(?!\*).*?\*/", re.S)
-OPAQUE = re.compile(r"^typedef struct (ric_\w+) \1;", re.M)
+    r"\((?P<parameters>(?:[^()]|\((?:[^()])*\))*)\)", re.DOTALL | re.MULTILINE)
+REMARK = re.compile(r"/\*(?!\*).*?\*/", re.DOTALL)
+OPAQUE = re.compile(r"^typedef struct (ric_\w+) \1;", re.MULTILINE)
 
 
 @dataclass
@@ -151,7 +151,7 @@ def written(functions, opaque):
 def main(headers, output):
     texts = [path.read_text() for path in sorted(Path(headers).glob("*.h"))]
     functions = [f for text in texts for f in functions_of(text)]
-    exported = sum(len(re.findall(r"^RIC_API", text, re.M)) for text in texts)
+    exported = sum(len(re.findall(r"^RIC_API", text, re.MULTILINE)) for text in texts)
     if len(functions) != exported:
         sys.exit(f"null_calls: {len(functions)} functions understood, expected {exported}")
     opaque = {name for text in texts for name in OPAQUE.findall(text)}
