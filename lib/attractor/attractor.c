@@ -6,6 +6,7 @@
 #include <stdlib.h>
 
 #include "ricochet/attractor.h"
+#include "numeric/required.h"
 
 ric_attractor_options ric_attractor_options_default(void) {
   return (ric_attractor_options){
@@ -16,6 +17,7 @@ enum { MOST_PERIOD = 100000 };
 static const double most_iterates = 0x1p52; /* the sum of two is exact in every type of number */
 
 ric_status ric_attractor_options_check(const ric_attractor_options *o, size_t size, ric_error *error) {
+  REQUIRE(error, {"options", o});
   if (!((double)o->transient <= most_iterates))
     return ric_fail(error, RIC_EINVAL, "transient = %zu, expected at most %.0f", o->transient, most_iterates);
   if (!(o->measure >= 1 && (double)o->measure <= most_iterates))

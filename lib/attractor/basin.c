@@ -1,5 +1,6 @@
 /* Basins of attraction. */
 #include "ricochet/basin.h"
+#include "numeric/required.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -16,6 +17,7 @@ ric_basin_options ric_basin_options_default(void) {
 }
 
 ric_status ric_basin_create(size_t size, const ric_basin_options *options, ric_basin **basin, ric_error *error) {
+  REQUIRE(error, {"basin", basin});
   const ric_basin_options o = options ? *options : ric_basin_options_default();
   *basin = NULL;
   if (size == 0 || o.limit == 0 || !(o.same_tol >= 0))
@@ -29,7 +31,7 @@ ric_status ric_basin_create(size_t size, const ric_basin_options *options, ric_b
 }
 
 void ric_basin_destroy(ric_basin **basin) {
-  if (!*basin)
+  if (!basin || !*basin)
     return;
   for (size_t i = 0; i < (*basin)->count; i++)
     free((double *)(*basin)->attractors[i].lowest);
@@ -94,6 +96,7 @@ int64_t ric_basin_label(const ric_basin *basin, const ric_attractor *run) {
 }
 
 ric_status ric_basin_add(ric_basin *basin, const ric_attractor *run, int64_t *label, ric_error *error) {
+  REQUIRE(error, {"basin", basin}, {"run", run}, {"label", label});
   const size_t period = period_of(run);
   if (run->kind == RIC_ATTRACTOR_PERIODIC && !run->lowest)
     return ric_fail(error, RIC_EINVAL, "a run of period %zu without its lowest state", period);

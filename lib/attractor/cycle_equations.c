@@ -8,6 +8,7 @@
 
 #include <gsl/gsl_linalg.h>
 
+#include "numeric/required.h"
 #include "numeric/vector.h"
 
 enum { MOST_PERIOD = 10000, MOST_UNKNOWNS = 500 };
@@ -39,6 +40,7 @@ static void apply(const ric_grazing_map *map, const double *x, size_t columns, d
 /* --- life --------------------------------------------------------------------------------------------------------- */
 
 static ric_status check_cycle(const ric_map_line *line, double p, size_t period, const double *z, ric_error *error) {
+  REQUIRE(error, {"at", called(line->at != NULL)});
   if (period < 1 || period > MOST_PERIOD)
     return ric_fail(error, RIC_EINVAL, "period = %zu, expected 1 to %d", period, MOST_PERIOD);
   if (!isfinite(p))

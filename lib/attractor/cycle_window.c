@@ -12,6 +12,7 @@
 #include "cycle_equations.h"
 #include "ricochet/elementary.h"
 #include "numeric/gsl_quiet.h"
+#include "numeric/required.h"
 
 enum { MOST_STEPS = 100000, MOST_TRIALS = 200 };
 
@@ -147,6 +148,7 @@ static ric_status start(edge_search *w, double p, double *z, ric_cycle_window *w
 
 ric_status ric_cycle_find(const ric_map_line *line, double p, size_t period, double *z, ric_cycle_window *window,
                           ric_error *error) {
+  REQUIRE(error, {"line", line}, {"z", z}, {"window", window});
   edge_search w;
   keep_gsl_quiet();
   ric_status status = edge_search_init(&w, line, p, period, 1, z, error);
@@ -389,6 +391,7 @@ static ric_status find_window(edge_search *w, double low, double high, double st
 
 ric_status ric_cycle_window_find(const ric_map_line *line, double p, size_t period, double low, double high,
                                  double step, double *z, ric_poll poll, ric_cycle_window *window, ric_error *error) {
+  REQUIRE(error, {"line", line}, {"z", z}, {"window", window});
   edge_search w;
   ric_error own;
   if (!(low < p))

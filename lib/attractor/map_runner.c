@@ -12,6 +12,7 @@
 #include "numeric/number_block.h"
 #include "ricochet/elementary.h"
 #include "numeric/gsl_quiet.h"
+#include "numeric/required.h"
 
 enum {
   PIECE_LENGTH = 16,    /* iterates at a time: their states stay in the cache */
@@ -106,6 +107,7 @@ static ric_status set_directions(ric_map_runner *r, ric_error *error) {
 
 ric_status ric_map_runner_create(size_t size, const ric_attractor_options *options, ric_map_lanes lanes,
                                  ric_map_runner **runner, ric_error *error) {
+  REQUIRE(error, {"runner", runner});
   ric_attractor_options o = options ? *options : ric_attractor_options_default();
   *runner = NULL;
   if (size < 1)
@@ -435,6 +437,8 @@ static ric_status check_run(const ric_map_runner *r, size_t i, const ric_grazing
 
 ric_status ric_map_runner_run(ric_map_runner *r, size_t count, const ric_grazing_map *const *maps, const double *d,
                               ric_attractor *attractors, ric_error *error) {
+  REQUIRE(error, {"runner", r}, {"maps", unless_empty(count, maps)}, {"d", unless_empty(count, d)},
+          {"attractors", unless_empty(count, attractors)});
   for (size_t i = 0; i < count; i++)
     RIC_TRY(check_run(r, i, maps[i], d[i], &attractors[i], error));
   for (size_t first = 0; first < count; first += r->block.width) {

@@ -9,6 +9,7 @@
 #include "floquet/lyapunov.h"
 #include "impact/trajectory.h"
 #include "numeric/constants.h"
+#include "numeric/required.h"
 #include "ricochet/elementary.h"
 #include "ricochet/motion_section.h"
 
@@ -267,6 +268,7 @@ void ric_motion_section_destroy(ric_motion_section **section) {
 
 ric_status ric_motion_section_create(const ric_system *system, const ric_motion_section_options *options,
                                      ric_motion_section **section, ric_error *error) {
+  REQUIRE(error, {"system", system}, {"options", options}, {"section", section});
   *section = NULL;
   RIC_TRY(check_section(system, options, error));
   ric_motion_section *s = calloc(1, sizeof *s);
@@ -284,6 +286,7 @@ size_t ric_motion_section_size(const ric_motion_section *section) {
 }
 
 ric_status ric_motion_section_set_period(ric_motion_section *section, double period, ric_error *error) {
+  REQUIRE(error, {"section", section});
   crossings *c = &section->crossings;
   ric_motion_section_options o = c->options;
   o.period = period;
@@ -494,6 +497,7 @@ static ric_status clear_results(const ric_attractor_options *o, size_t size, ric
 
 ric_status ric_motion_section_run(ric_motion_section *section, const ric_attractor_options *options,
                                   ric_attractor *attractor, ric_error *error) {
+  REQUIRE(error, {"section", section}, {"attractor", attractor});
   crossings *c = &section->crossings;
   ric_attractor_options o = options ? *options : ric_attractor_options_default();
   size_t numbers = c->n + c->m;

@@ -6,6 +6,7 @@
 
 #include "ricochet/family.h"
 #include "ricochet/motion_window.h"
+#include "numeric/required.h"
 
 /* The data that shooting needs of a forced motion on its attractor. */
 
@@ -166,6 +167,7 @@ static ric_status set_scaled(ric_system *system, const double *parameters, doubl
 
 static ric_status check_window(const ric_family_problem *problem, size_t periods, double p, double low, double high,
                                double t, ric_error *error) {
+  REQUIRE(error, {"system", problem->system});
   if (problem->motion.kind != RIC_MOTION_FORCED)
     return ric_fail(error, RIC_EINVAL, "motion.kind = %d, expected forced motions", (int)problem->motion.kind);
   if (periods < 1)
@@ -385,6 +387,7 @@ static ric_status find_window(search *s, double t, const double *q, const double
 ric_status ric_motion_window_find(const ric_family_problem *problem, size_t periods, double p, double low, double high,
                                   double t, const double *q, const double *u, const ric_family_options *options,
                                   ric_motion_window *window, ric_error *error) {
+  REQUIRE(error, {"problem", problem}, {"q", q}, {"window", window});
   search s = {.problem = problem, .periods = periods, .p = p, .low = low, .high = high};
   RIC_TRY(check_window(problem, periods, p, low, high, t, error));
   set_up(&s, options);

@@ -1,5 +1,6 @@
 /* Windows of a diagram: bracketed on the attractor, located on the cycle. */
 #include "ricochet/windows.h"
+#include "numeric/required.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -135,6 +136,7 @@ static ric_status locate(search *s, ric_window *window) {
 
 ric_status ric_window_locate_cycle(const ric_map_line *maps, double p, const double *z, double low, double high,
                                    ric_poll poll, ric_window *window, ric_error *error) {
+  REQUIRE(error, {"maps", maps}, {"z", z}, {"window", window});
   ric_cycle_window found = {0};
   double *state = malloc(maps->size * sizeof *state);
   if (!state)
@@ -165,6 +167,8 @@ static void set_reason(const ric_motion_window *found, ric_window *window) {
 
 ric_status ric_window_locate_motion(const ric_family_problem *problem, double p, double t, const double *z, double low,
                                     double high, ric_window *window, ric_error *error) {
+  REQUIRE(error, {"problem", problem}, {"z", z}, {"window", window});
+  REQUIRE(error, {"system", problem->system});
   ric_motion_window found = {0};
   RIC_TRY(ric_motion_window_find(problem, window->period, p, low, high, t, z,
                                  z + ric_system_coordinates(problem->system), NULL, &found, error));
@@ -249,6 +253,10 @@ static ric_status find_windows(search *s) {
 }
 
 ric_status ric_windows_find(const ric_window_line *line, ric_windows *found, ric_error *error) {
+  REQUIRE(error, {"line", line}, {"found", found});
+  REQUIRE(error, {"p", unless_empty(line->points, line->p)},
+          {"attractors", unless_empty(line->points, line->attractors)}, {"run", called(line->run != NULL)},
+          {"locate", called(line->locate != NULL)});
   search s = {.line = line, .found = found, .error = error};
   *found = (ric_windows){0};
   if (line->points == 0 || line->size == 0)
@@ -268,6 +276,8 @@ ric_status ric_windows_find(const ric_window_line *line, ric_windows *found, ric
 }
 
 void ric_windows_clear(ric_windows *windows) {
+  if (!windows)
+    return;
   free(windows->windows);
   *windows = (ric_windows){0};
 }

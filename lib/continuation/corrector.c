@@ -9,6 +9,7 @@
 #include "curve.h"
 #include "ricochet/elementary.h"
 #include "numeric/gsl_quiet.h"
+#include "numeric/required.h"
 
 /* From this size on LU with row pivoting: 9 times as quick as QR at 1000, twice at 30, since GSL does it in blocks. It
  * allocates its pivots in every call, a cost that small problems avoid. */
@@ -195,6 +196,7 @@ ric_status corrector_tangent(ric_curve *c, double *t, bordered_determinant *det,
 }
 
 ric_status ric_curve_solve(ric_curve *curve, double *u, double p, int *iterations, ric_error *error) {
+  REQUIRE(error, {"curve", curve}, {"u", u});
   size_t n = curve->problem.unknowns;
   double *x = curve->trial.x;
   int count = 0;

@@ -1,6 +1,7 @@
 /* Points of a curve, products of their vectors, and the workspace of a continuation. */
 #include "curve.h"
 #include "numeric/gsl_quiet.h"
+#include "numeric/required.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -188,7 +189,7 @@ static ric_status allocate_curve(ric_curve *c, ric_error *error) {
 }
 
 void ric_curve_destroy(ric_curve **curve) {
-  if (!*curve)
+  if (!curve || !*curve)
     return;
   free((*curve)->block);
   free((*curve)->linear.permutation);
@@ -201,6 +202,7 @@ void ric_curve_destroy(ric_curve **curve) {
 
 ric_status ric_curve_create(const ric_curve_problem *problem, const ric_curve_options *options, ric_curve **curve,
                             ric_error *error) {
+  REQUIRE(error, {"problem", problem}, {"curve", curve});
   ric_curve_options o = options ? *options : ric_curve_options_default();
   RIC_TRY(check_curve(problem, &o, error));
   ric_curve *c = calloc(1, sizeof *c);

@@ -7,6 +7,7 @@
 #include "ricochet/elementary.h"
 #include "step.h"
 #include "numeric/gsl_quiet.h"
+#include "numeric/required.h"
 
 /* Special points closer to a start with a given tangent, relative to the first step, are the start itself: a branch
  * point or a fold, accurate to rounding only. */
@@ -185,6 +186,7 @@ static ric_status run_to_end(curve_follower *w, double *u, double p, const doubl
 ric_status ric_curve_follow(ric_curve *curve, double *u, double p, const double *tangent,
                             int (*point)(const ric_curve_point *point, void *user), void *user, ric_curve_run *run,
                             ric_error *error) {
+  REQUIRE(error, {"curve", curve}, {"u", u}, {"run", run});
   curve_follower w = {.c = curve, .point = point, .user = user, .run = run};
   *run = (ric_curve_run){0};
   curve->iterations = curve->linear.jacobians = 0;

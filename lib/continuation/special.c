@@ -12,6 +12,7 @@
 #include "ricochet/elementary.h"
 #include "step.h"
 #include "numeric/gsl_quiet.h"
+#include "numeric/required.h"
 
 /* The bracket is bisected by corrected points to this fraction of the step. There the cubic through its ends replaces
  * the curve: a step turns by less than 1, so the error is at most about (1/256)^4 / 384 = 6e-13 of the radius of
@@ -375,6 +376,7 @@ static ric_status other_tangent(ric_curve *c, null_space *k, const double *x, co
 
 ric_status ric_curve_switch(ric_curve *curve, const double *u, double p, const double *tangent, double *other,
                             ric_error *error) {
+  REQUIRE(error, {"curve", curve}, {"u", u}, {"tangent", tangent}, {"other", other});
   size_t n = curve->problem.unknowns;
   double *x = curve->low.x, *t = curve->low.t, length = curve_norm(curve, tangent);
   null_space k = {0};

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "family.h"
+#include "numeric/required.h"
 
 /* A segment that is queued, followed or done. */
 typedef struct segment {
@@ -209,6 +210,7 @@ static void clear(exploration *e) {
 
 ric_status ric_family_explore(ric_family *family, const double *z, double parameter, const ric_explore_options *options,
                               const ric_explore_visitor *visitor, ric_error *error) {
+  REQUIRE(error, {"family", family}, {"z", z}, {"visitor", visitor});
   exploration e = {.options = options ? *options : ric_explore_options_default(), .visitor = *visitor, .error = error};
   if (!(e.options.segments >= 1 && e.options.same_point_tol >= 0))
     return ric_fail(error, RIC_EINVAL, "segments = %zu, same_point_tol = %g, expected at least 1 and 0",

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "ricochet/family.h"
+#include "numeric/required.h"
 
 /* Continuation runs along a family. */
 
@@ -92,6 +93,7 @@ static int report_point(const ric_curve_point *c, void *user) {
 ric_status ric_family_follow(ric_family *f, double *z, double parameter, const double *tangent,
                              int (*point)(const ric_family_point *point, void *user), void *user, ric_curve_run *run,
                              ric_error *error) {
+  REQUIRE(error, {"family", f}, {"z", z}, {"run", run});
   ric_error own;
   follower w = {.f = f, .point = point, .user = user, .run = run, .error = error ? error : &own};
   f->coincide = SIZE_MAX;
@@ -102,6 +104,7 @@ ric_status ric_family_follow(ric_family *f, double *z, double parameter, const d
 
 ric_status ric_family_switch(ric_family *f, const double *z, double parameter, const double *tangent, double *other,
                              ric_error *error) {
+  REQUIRE(error, {"family", f}, {"z", z}, {"tangent", tangent}, {"other", other});
   family_forget(f);
   return ric_curve_switch(f->curve, z, parameter, tangent, other, error);
 }
@@ -215,6 +218,7 @@ static ric_status copy_hits(ric_family *f, ric_error *error) {
 }
 
 static ric_status check_family(const ric_family_problem *p, const ric_family_options *o, ric_error *error) {
+  REQUIRE(error, {"system", p->system});
   size_t numbers = ric_system_coordinates(p->system) + ric_system_speeds(p->system);
   if (p->parameters < 1 || p->parameters > 2 || (p->parameters == 2 && !p->set))
     return ric_fail(error, RIC_EINVAL, "parameters = %zu, expected 1, or 2 with a function that sets them",
@@ -268,6 +272,7 @@ void ric_family_destroy(ric_family **family) {
 
 ric_status ric_family_create(const ric_family_problem *problem, const ric_family_options *options, ric_family **family,
                              ric_error *error) {
+  REQUIRE(error, {"problem", problem}, {"family", family});
   ric_family_options o = options ? *options : ric_family_options_default();
   *family = NULL;
   RIC_TRY(check_family(problem, &o, error));
@@ -292,6 +297,7 @@ ric_shooting *ric_family_shooting(ric_family *family) {
 
 ric_status ric_family_start(ric_family *f, double parameter, const double *q, const double *u, const double *times,
                             double period, double *z, int *iterations, ric_error *error) {
+  REQUIRE(error, {"family", f}, {"q", q}, {"z", z});
   family_forget(f);
   RIC_TRY(family_set(f, parameter, f->problem.second, error));
   RIC_TRY(ric_shooting_guess(f->shooting, q, u, times, period, z, error));

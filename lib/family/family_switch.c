@@ -8,6 +8,7 @@
 
 #include "family.h"
 #include "numeric/gsl_quiet.h"
+#include "numeric/required.h"
 
 /* Families that meet: what all switches share. */
 
@@ -19,6 +20,8 @@ static const double first_step = 1e-3;
 static const double singular_tol = 1e-7;
 
 void ric_family_junction_clear(ric_family_junction *junction) {
+  if (!junction)
+    return;
   ric_family_destroy(&junction->family);
   free(junction->z);
   free(junction->tangent);
@@ -314,6 +317,7 @@ static ric_status find_sides(crossing *c) {
 
 ric_status ric_family_cross(ric_family *family, const ric_family_point *point, ric_family_junction *junction,
                             ric_error *error) {
+  REQUIRE(error, {"family", family}, {"point", point}, {"junction", junction});
   crossing c = {.from = family, .point = point, .problem = family->problem, .junction = junction, .error = error};
   *junction = (ric_family_junction){0};
   family_forget(family);
@@ -398,6 +402,7 @@ static ric_status find_tangent(ric_family_junction *j, ric_error *error) {
 
 ric_status ric_family_double(ric_family *family, const ric_family_point *point, ric_family_junction *junction,
                              ric_error *error) {
+  REQUIRE(error, {"family", family}, {"point", point}, {"junction", junction});
   doubling d = {.from = family,
                 .point = point,
                 .problem = family->problem,

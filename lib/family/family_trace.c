@@ -13,6 +13,7 @@
 #include "family.h"
 #include "ricochet/elementary.h"
 #include "numeric/gsl_quiet.h"
+#include "numeric/required.h"
 
 /* Step of differences of psi, relative to 1 + the size of the variable. */
 static const double psi_step = 1e-5;
@@ -230,6 +231,7 @@ ric_status ric_family_trace(ric_family *f, const ric_family_point *point, const 
                             const ric_family_curve_tests *tests,
                             int (*visit)(const ric_family_curve_point *point, void *user), void *user,
                             ric_curve_run *run, ric_error *error) {
+  REQUIRE(error, {"family", f}, {"point", point}, {"run", run});
   ric_error own;
   size_t n = f->unknowns;
   tracer t = {.f = f, .visit = visit, .user = user, .error = error ? error : &own};

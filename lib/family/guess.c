@@ -10,6 +10,7 @@
 #include "ricochet/elementary.h"
 #include "ricochet/family.h"
 #include "ricochet/normal_modes.h"
+#include "numeric/required.h"
 #include "shooting/shooting.h"
 
 /* Most steps of a continuation run in the factor. A motion that continues to 1 takes a dozen, near other families a
@@ -31,6 +32,7 @@ static const double moves_tol = 1e-12;
 static const double side_step = 1e-4;
 
 ric_status ric_guess_init(ric_guess *guess, size_t particles, ric_error *error) {
+  REQUIRE(error, {"guess", guess});
   *guess = (ric_guess){0};
   if (particles == 0)
     return ric_fail(error, RIC_EINVAL, "particles = 0, expected at least 1");
@@ -43,6 +45,8 @@ ric_status ric_guess_init(ric_guess *guess, size_t particles, ric_error *error) 
 }
 
 void ric_guess_clear(ric_guess *guess) {
+  if (!guess)
+    return;
   free(guess->q);
   free(guess->v);
   *guess = (ric_guess){0};
@@ -84,6 +88,7 @@ static ric_status find_amplitude(const ric_lattice *lattice, size_t particle, do
 
 ric_status ric_guess_particles(const ric_lattice *lattice, const size_t *excited, size_t count, double period,
                                ric_guess *guess, ric_error *error) {
+  REQUIRE(error, {"lattice", lattice}, {"excited", unless_empty(count, excited)}, {"guess", guess});
   double amplitude;
   RIC_TRY(ric_lattice_check(lattice, error));
   for (size_t k = 0; k < count; k++)
@@ -129,6 +134,7 @@ static ric_status put_mode(const ric_system *system, size_t mode, double energy,
 }
 
 ric_status ric_guess_mode(const ric_lattice *lattice, size_t mode, double energy, ric_guess *guess, ric_error *error) {
+  REQUIRE(error, {"lattice", lattice}, {"guess", guess});
   ric_system *system = NULL;
   RIC_TRY(ric_system_create_lattice(lattice, NULL, 0, &system, error));
   double *shape = calloc(lattice->particles, sizeof *shape);
@@ -202,6 +208,9 @@ static ric_status create_linear(homotopy *h, ric_error *error) {
 
 static ric_status check_problem(const ric_guess_problem *problem, ric_error *error) {
   const ric_shooting_problem *motion = problem->motion;
+  REQUIRE(error, {"motion", motion}, {"lattice", problem->lattice},
+          {"obstacles", unless_empty(problem->obstacle_count, problem->obstacles)});
+  REQUIRE(error, {"at_start", unless_empty(motion->start_count, motion->at_start)});
   if (motion->kind != RIC_MOTION_EVEN || motion->energy_given)
     return ric_fail(error, RIC_EINVAL, "a first guess from the linear part is for even motions with the period given");
   for (size_t k = 0; k < motion->start_count; k++)
@@ -331,6 +340,7 @@ static void press_contacts(const ric_guess_problem *problem, ric_guess *guess) {
 }
 
 ric_status ric_guess_even(const ric_guess_problem *problem, double period, ric_guess *guess, ric_error *error) {
+  REQUIRE(error, {"problem", problem}, {"guess", guess});
   homotopy h;
   ric_status status = homotopy_init(&h, problem, error);
   h.period = period;
@@ -494,6 +504,7 @@ static ric_status find_energy_sign(homotopy *h, size_t mode, int *rise, ric_erro
 
 ric_status ric_guess_grazing_mode(const ric_guess_problem *problem, size_t mode, size_t swings, ric_guess *guess,
                                   ric_error *error) {
+  REQUIRE(error, {"problem", problem}, {"guess", guess});
   homotopy h;
   int rise = 0;
   ric_status status = homotopy_init(&h, problem, error);
@@ -533,6 +544,7 @@ static ric_status put_orbit(ric_shooting *shooting, const double *z, ric_guess *
 
 ric_status ric_guess_solve(ric_shooting *shooting, const double *times, ric_guess *guess, double *energy,
                            ric_error *error) {
+  REQUIRE(error, {"shooting", shooting}, {"guess", guess}, {"energy", energy});
   double *z = calloc(ric_shooting_unknowns(shooting), sizeof *z);
   ric_status status = z ? ric_shooting_guess(shooting, guess->q, guess->v, times, guess->period, z, error)
                         : ric_fail(error, RIC_ENOMEM, "no memory for the motion of a guess");

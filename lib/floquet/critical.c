@@ -5,6 +5,7 @@
 #include "orbit_multipliers.h"
 #include "ricochet/orbit_multipliers.h"
 #include "numeric/gsl_quiet.h"
+#include "numeric/required.h"
 
 /* Rounding of alpha, relative to the largest entry of the reduced matrix: ten times the observed value; its root for
  * the imaginary part of two that collide. */
@@ -212,6 +213,8 @@ static ric_status check_family(const ric_chain *chain, const ric_pattern *patter
 ric_status ric_orbit_critical_points(ric_orbit_solver *solver, const ric_chain *chain, const ric_pattern *pattern,
                                      ric_along along, double period, double low, double high, size_t points,
                                      ric_critical *found, size_t capacity, size_t *count, ric_error *error) {
+  REQUIRE(error, {"solver", solver}, {"chain", chain}, {"pattern", pattern}, {"found", unless_empty(capacity, found)},
+          {"count", count});
   family f = {.solver = solver,
               .chain = *chain,
               .pattern = pattern,

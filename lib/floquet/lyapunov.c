@@ -8,6 +8,7 @@
 #include "impact/trajectory.h"
 #include "model/system_model.h"
 #include "numeric/gsl_quiet.h"
+#include "numeric/required.h"
 
 ric_lyapunov_options ric_lyapunov_options_default(void) {
   return (ric_lyapunov_options){.interval = 1};
@@ -178,6 +179,7 @@ static ric_status run_course(lyapunov_course *c, double end, double *exponents, 
 
 ric_status ric_lyapunov_run(ric_trajectory *trajectory, double end, const ric_lyapunov_options *options,
                             double *exponents, ric_lyapunov *lyapunov, ric_error *error) {
+  REQUIRE(error, {"trajectory", trajectory}, {"exponents", exponents}, {"lyapunov", lyapunov});
   ric_lyapunov_options o = options ? *options : ric_lyapunov_options_default();
   size_t size = trajectory->system->coordinates + trajectory->system->speeds;
   lyapunov_course c = {0};

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "numeric/required.h"
 #include "numeric/vector.h"
 
 /* Sets M to the unit matrix: the initial tangent vectors. */
@@ -53,6 +54,7 @@ static ric_status run_period(ric_trajectory *trajectory, const ric_system *syste
 ric_status ric_monodromy_find(const ric_system *system, double start, const double *q, const double *u, double period,
                               const ric_trajectory_options *options, double *M, ric_monodromy *monodromy,
                               ric_error *error) {
+  REQUIRE(error, {"system", system}, {"q", q}, {"M", M}, {"monodromy", monodromy});
   ric_trajectory *trajectory = NULL;
   *monodromy = (ric_monodromy){.closure_error = NAN};
   if (!(period > 0 && period < INFINITY))
@@ -66,6 +68,7 @@ ric_status ric_monodromy_find(const ric_system *system, double start, const doub
 ric_status ric_orbit_monodromy(ric_orbit_solver *solver, const ric_chain *chain, const ric_orbit *orbit,
                                const ric_trajectory_options *options, double *M, ric_monodromy *monodromy,
                                ric_error *error) {
+  REQUIRE(error, {"solver", solver}, {"chain", chain}, {"orbit", orbit}, {"M", M}, {"monodromy", monodromy});
   size_t n = chain->particles;
   double quarter = orbit->period / 4, *q = malloc(2 * n * sizeof *q);
   ric_system *system = NULL;

@@ -14,6 +14,7 @@
 #include "ricochet/multipliers.h"
 #include "numeric/gsl_quiet.h"
 #include "numeric/complex_number.h"
+#include "numeric/required.h"
 
 /* A pair (mu, 1/mu) of multipliers and its representative alpha = (mu + 1/mu) / 2. */
 
@@ -305,6 +306,7 @@ const char *ric_stability_name(ric_stability stability) {
 }
 
 ric_status ric_multipliers_init(ric_multipliers *m, size_t dimension, ric_error *error) {
+  REQUIRE(error, {"multipliers", m});
   *m = (ric_multipliers){.dimension = dimension};
   if (dimension < 1)
     return ric_fail(error, RIC_EINVAL, "multipliers of dimension 0, expected at least 1");
@@ -316,6 +318,8 @@ ric_status ric_multipliers_init(ric_multipliers *m, size_t dimension, ric_error 
 }
 
 void ric_multipliers_clear(ric_multipliers *m) {
+  if (!m)
+    return;
   free(m->mu);
   *m = (ric_multipliers){0};
 }
@@ -326,6 +330,7 @@ ric_multiplier_options ric_multiplier_options_default(void) {
 
 ric_status ric_multipliers_of_matrix(const double *M, size_t dimension, size_t trivial,
                                      const ric_multiplier_options *options, ric_multipliers *m, ric_error *error) {
+  REQUIRE(error, {"M", M}, {"multipliers", m});
   multiplier_work work = {0};
   ric_multiplier_options o = options ? *options : ric_multiplier_options_default();
   RIC_TRY(multiplier_options_check(&o, error));

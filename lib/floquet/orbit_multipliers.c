@@ -9,6 +9,7 @@
 #include "orbit_multipliers.h"
 #include "ricochet/monodromy.h"
 #include "numeric/gsl_quiet.h"
+#include "numeric/required.h"
 
 ric_orbit_multiplier_options ric_orbit_multiplier_options_default(void) {
   return (ric_orbit_multiplier_options){.method = RIC_MULTIPLIERS_AUTO, .judge = ric_multiplier_options_default()};
@@ -160,6 +161,7 @@ static ric_status compute(ric_orbit_solver *solver, const ric_chain *chain, cons
 ric_status ric_orbit_multipliers(ric_orbit_solver *solver, const ric_chain *chain, const ric_pattern *pattern,
                                  const ric_orbit *orbit, const ric_orbit_multiplier_options *options,
                                  ric_multipliers *m, ric_error *error) {
+  REQUIRE(error, {"solver", solver}, {"chain", chain}, {"pattern", pattern}, {"orbit", orbit}, {"multipliers", m});
   ric_error own, *e = error ? error : &own;
   ric_orbit_multiplier_options o = options ? *options : ric_orbit_multiplier_options_default();
   RIC_TRY(check_orbit(chain, pattern, orbit, &o, m, e));

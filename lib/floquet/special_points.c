@@ -1,5 +1,6 @@
 /* Special points along a sweep: three searches, one list. */
 #include "ricochet/special_points.h"
+#include "numeric/required.h"
 
 #include <math.h>
 #include <stdint.h>
@@ -164,6 +165,7 @@ static ric_status report_all(special_list *s, int (*point)(const ric_special_poi
 ric_status ric_orbit_special_points(ric_orbit_solver *solver, const ric_special_range *range,
                                     int (*point)(const ric_special_point *point, void *user), void *user,
                                     ric_error *error) {
+  REQUIRE(error, {"solver", solver}, {"range", range}, {"point", called(point != NULL)});
   special_list list = {.solver = solver, .range = range};
   ric_status status = find_all(&list, error);
   if (status == RIC_OK)

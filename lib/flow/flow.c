@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "flow_method.h"
+#include "numeric/required.h"
 
 ric_flow_options ric_flow_options_default(void) {
   return (ric_flow_options){.longest_step = INFINITY};
@@ -25,6 +26,7 @@ static ric_status check_options(const ric_flow_options *o, double least_toleranc
 
 ric_status ric_flow_create(const ric_system *system, const ric_flow_options *options, ric_flow **flow,
                            ric_error *error) {
+  REQUIRE(error, {"system", system}, {"flow", flow});
   ric_flow_options o = options ? *options : ric_flow_options_default();
   *flow = NULL;
   if (o.method != RIC_FLOW_AUTO && o.method != RIC_FLOW_TAYLOR && o.method != RIC_FLOW_CVODES)
@@ -95,7 +97,9 @@ ric_status flow_check_revision(const ric_flow *flow, ric_error *error) {
 }
 
 ric_status ric_flow_start(ric_flow *flow, double t, const double *q, const double *u, ric_error *error) {
+  REQUIRE(error, {"flow", flow}, {"q", q});
   size_t n = flow->system->coordinates, m = flow->system->speeds;
+  REQUIRE(error, {"u", unless_empty(m, u)});
   if (!isfinite(t))
     return ric_fail(error, RIC_EINVAL, "t = %g, expected a finite time", t);
   RIC_TRY(check_finite("q", q, n, error));
@@ -130,7 +134,9 @@ static ric_status reserve_tangents(ric_flow *flow, size_t columns, ric_error *er
 }
 
 ric_status ric_flow_carry(ric_flow *flow, size_t columns, const double *dq, const double *du, ric_error *error) {
+  REQUIRE(error, {"flow", flow}, {"dq", unless_empty(columns, dq)});
   size_t n = flow->system->coordinates, m = flow->system->speeds;
+  REQUIRE(error, {"du", unless_empty(m * columns, du)});
   RIC_TRY(flow_check_revision(flow, error));
   RIC_TRY(check_finite("dq", dq, n * columns, error));
   RIC_TRY(check_finite("du", du, m * columns, error));
@@ -165,6 +171,7 @@ ric_status flow_restart(ric_flow *flow, ric_error *error) {
 }
 
 ric_status ric_flow_step(ric_flow *flow, double stop, ric_error *error) {
+  REQUIRE(error, {"flow", flow});
   flow->length = 0;
   RIC_TRY(flow_check_revision(flow, error));
   if (!isfinite(stop))

@@ -7,6 +7,7 @@
 #include "impact/impact_law.h"
 #include "impact/locate.h"
 #include "grazing.h"
+#include "numeric/required.h"
 #include "numeric/vector.h"
 #include "shooting/arcs.h"
 
@@ -322,6 +323,7 @@ void ric_bypass_destroy(ric_bypass **bypass) {
 
 ric_status ric_bypass_create(ric_system *system, size_t obstacle, const ric_bypass_options *options,
                              ric_bypass **bypass, ric_error *error) {
+  REQUIRE(error, {"system", system}, {"bypass", bypass});
   ric_bypass_options o = options ? *options : ric_bypass_options_default();
   *bypass = NULL;
   RIC_TRY(check_bypass(system, obstacle, &o, error));
@@ -420,6 +422,7 @@ static ric_status move_to_minimum(ric_bypass *b, double t, const double *x, ric_
 }
 
 ric_status ric_bypass_look(ric_bypass *b, double t, const double *x, ric_bypass_seen *seen, ric_error *error) {
+  REQUIRE(error, {"bypass", b}, {"x", x}, {"seen", seen});
   ric_bypass_seen found;
   RIC_TRY(move_to_minimum(b, t, x, &found, error));
   *seen = found;
@@ -467,6 +470,7 @@ static ric_status hit(ric_bypass *b, double *gap_rate, ric_error *error) {
 
 ric_status ric_bypass_map(ric_bypass *b, double t, const double *x, double *image, ric_bypass_seen *seen,
                           ric_error *error) {
+  REQUIRE(error, {"bypass", b}, {"x", x}, {"image", image});
   ric_bypass_seen found;
   RIC_TRY(move_to_minimum(b, t, x, &found, error));
   if (found.psi <= 0) { /* [FN97] (4.2) */
@@ -484,6 +488,7 @@ ric_status ric_bypass_map(ric_bypass *b, double t, const double *x, double *imag
 
 ric_status ric_bypass_leading(ric_bypass *b, const ric_grazing_local *at_grazing, double t, const double *x,
                               double *image, ric_bypass_seen *seen, ric_error *error) {
+  REQUIRE(error, {"bypass", b}, {"at_grazing", at_grazing}, {"x", x}, {"image", image});
   ric_bypass_seen found;
   RIC_TRY(grazing_check_local(at_grazing, b->system, error));
   RIC_TRY(move_to_minimum(b, t, x, &found, error));
@@ -586,6 +591,7 @@ static ric_status run_scheme(scheme *k, ric_error *error) {
 
 ric_status ric_bypass_second(ric_bypass *b, const ric_grazing_local *at_grazing, double t, const double *x,
                              double *kappa, ric_error *error) {
+  REQUIRE(error, {"bypass", b}, {"at_grazing", at_grazing}, {"x", x}, {"kappa", kappa});
   RIC_TRY(grazing_check_local(at_grazing, b->system, error));
   double *work = malloc((2 * LEVELS + 3) * b->size * sizeof *work);
   if (!work)

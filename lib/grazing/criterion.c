@@ -9,6 +9,7 @@
 #include <gsl/gsl_blas.h>
 
 #include "dominant.h"
+#include "numeric/required.h"
 #include "numeric/vector.h"
 #include "numeric/linear.h"
 #include "numeric/number_block.h"
@@ -423,13 +424,12 @@ static void fill_departure(const criterion_work *w, const ric_grazing_criterion 
 ric_status ric_grazing_criterion_find(const ric_grazing_map *map, const ric_grazing_criterion_options *options,
                                       ric_grazing_criterion *criterion, double *coefficients, size_t count,
                                       double *departure, ric_error *error) {
+  REQUIRE(error, {"map", map}, {"criterion", criterion}, {"coefficients", unless_empty(count, coefficients)});
   const ric_grazing_criterion_options o = options ? *options : ric_grazing_criterion_options_default();
   ric_grazing_criterion found;
   criterion_work work = {.options = &o};
   RIC_TRY(ric_grazing_map_check(map, error));
   RIC_TRY(check_options(&o, error));
-  if (!coefficients && count > 0)
-    return ric_fail(error, RIC_EINVAL, "coefficients = NULL, expected an array of count = %zu", count);
   keep_gsl_quiet();
   ric_status status = decide_criterion(&work, map, &found, error);
   if (status == RIC_OK)
@@ -449,6 +449,7 @@ ric_status ric_grazing_criterion_find(const ric_grazing_map *map, const ric_graz
 
 ric_status ric_grazing_predict_window(const ric_grazing_criterion *criterion, double stretch, size_t period,
                                       double *border, double *flip, ric_error *error) {
+  REQUIRE(error, {"criterion", criterion}, {"border", border}, {"flip", flip});
   if (criterion->verdict != RIC_GRAZING_CONTINUOUS)
     return ric_fail(error, RIC_EINVAL, "a bifurcation that is %s, expected a continuous one",
                     ric_grazing_verdict_name(criterion->verdict));

@@ -7,6 +7,7 @@
 #include "family/family.h"
 #include "ricochet/grazing.h"
 #include "grazing.h"
+#include "numeric/required.h"
 #include "shooting/shooting.h"
 
 /* Minima of the gap of a motion. */
@@ -204,6 +205,8 @@ ric_grazing_options ric_grazing_options_default(void) {
 }
 
 void ric_grazing_clear(ric_grazing *g) {
+  if (!g)
+    return;
   ric_grazing_local_clear(&g->local);
   free(g->x);
   free(g->z);
@@ -213,6 +216,7 @@ void ric_grazing_clear(ric_grazing *g) {
 /* --- life --------------------------------------------------------------------------------------------------------- */
 
 ric_status ric_grazing_init(ric_grazing *g, const ric_shooting *s, ric_error *error) {
+  REQUIRE(error, {"grazing", g}, {"shooting", s});
   const size_t numbers = s->arcs.size, unknowns = s->arcs.unknowns;
   *g = (ric_grazing){.numbers = numbers, .unknowns = unknowns, .slope = NAN};
   g->x = calloc(numbers, sizeof *g->x);
@@ -352,6 +356,7 @@ static ric_status check_start(const ric_family *f, const ric_grazing *g, const r
 
 ric_status ric_grazing_take(ric_family *f, const double *z, double parameter, size_t obstacle, double time,
                             const ric_grazing_options *options, ric_grazing *g, ric_error *error) {
+  REQUIRE(error, {"family", f}, {"z", z}, {"grazing", g});
   const ric_grazing_options o = options ? *options : ric_grazing_options_default();
   const gap_minimum at = {.obstacle = obstacle, .time = time};
   RIC_TRY(check_start(f, g, &o, error));
@@ -419,6 +424,7 @@ static ric_status search_along(ric_family *f, double *z, double parameter, const
 
 ric_status ric_grazing_find(ric_family *f, double *z, double parameter, const ric_grazing_options *options,
                             ric_grazing *g, ric_error *error) {
+  REQUIRE(error, {"family", f}, {"z", z}, {"grazing", g});
   const ric_grazing_options o = options ? *options : ric_grazing_options_default();
   ric_grazing_search search;
   grazing_run r = {.g = g, .search = &search};
@@ -428,6 +434,7 @@ ric_status ric_grazing_find(ric_family *f, double *z, double parameter, const ri
 
 ric_status ric_grazing_search_along(ric_family *f, double *z, double parameter, const ric_grazing_options *options,
                                     ric_grazing_search *search, ric_grazing *g, ric_error *error) {
+  REQUIRE(error, {"family", f}, {"z", z}, {"search", search}, {"grazing", g});
   const ric_grazing_options o = options ? *options : ric_grazing_options_default();
   grazing_run r = {.g = g, .search = search, .admissible = true};
   ric_error why = {0};
@@ -510,6 +517,7 @@ static ric_status begin_curve(tracer *t, const ric_grazing *from, ric_error *err
 ric_status ric_grazing_trace(ric_family *f, const ric_grazing *from, const ric_curve_options *options, size_t count,
                              int (*seen)(const ric_grazing_curve_point *point, void *user), void *user,
                              ric_curve_run *run, ric_error *error) {
+  REQUIRE(error, {"family", f}, {"from", from}, {"run", run});
   ric_error own;
   tracer t = {.f = f, .count = count, .seen = seen, .user = user, .error = error ? error : &own};
   const ric_family_point point = {.kind = RIC_FAMILY_GRAZING,

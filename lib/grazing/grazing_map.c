@@ -1,4 +1,5 @@
 #include "ricochet/grazing_map.h"
+#include "numeric/required.h"
 
 #include <math.h>
 #include <stdint.h>
@@ -10,6 +11,7 @@
 /* --- storage ------------------------------------------------------------------------------------------------------ */
 
 ric_status ric_grazing_map_init(ric_grazing_map *map, size_t size, ric_error *error) {
+  REQUIRE(error, {"map", map});
   *map = (ric_grazing_map){0};
   if (size < 1)
     return ric_fail(error, RIC_EINVAL, "size = 0, expected at least 1");
@@ -23,6 +25,8 @@ ric_status ric_grazing_map_init(ric_grazing_map *map, size_t size, ric_error *er
 }
 
 void ric_grazing_map_clear(ric_grazing_map *map) {
+  if (!map)
+    return;
   free(map->L); /* the block that holds them all */
   *map = (ric_grazing_map){0};
 }
@@ -41,6 +45,7 @@ static ric_status check_vector(const char *name, const double *x, size_t size, b
 }
 
 ric_status ric_grazing_map_check(const ric_grazing_map *map, ric_error *error) {
+  REQUIRE(error, {"map", map});
   size_t n = map->size;
   if (n < 1)
     return ric_fail(error, RIC_EINVAL, "size = 0, expected at least 1");
@@ -56,6 +61,7 @@ ric_status ric_grazing_map_check(const ric_grazing_map *map, ric_error *error) {
 }
 
 ric_status ric_grazing_map_example(ric_grazing_map *map, double lambda, double omega, ric_error *error) {
+  REQUIRE(error, {"map", map});
   *map = (ric_grazing_map){0};
   if (!isfinite(lambda))
     return ric_fail(error, RIC_EINVAL, "lambda = %g, expected a finite number", lambda);
@@ -120,6 +126,7 @@ void ric_grazing_map_derivative(const ric_grazing_map *map, double d, const doub
 
 ric_status ric_grazing_map_return(const ric_grazing_map *map, double d, double *z, size_t most, double *work,
                                   size_t *count, ric_error *error) {
+  REQUIRE(error, {"map", map}, {"z", z}, {"work", work}, {"count", count});
   double depth = depth_of(map, d, z);
   *count = 0;
   if (!(depth >= 0))

@@ -14,6 +14,7 @@
 #include "ricochet/elementary.h"
 #include "ricochet/grazing_map.h"
 #include "numeric/gsl_quiet.h"
+#include "numeric/required.h"
 
 /* Where pairs of complex multipliers of one-impact orbits lie on the unit circle.
  *
@@ -290,6 +291,7 @@ static ric_status choose_widest(one_impact *o, const cuts *c, ric_grazing_window
 
 ric_status ric_grazing_window_find(const ric_grazing_map *map, size_t period, ric_grazing_window *window,
                                    ric_error *error) {
+  REQUIRE(error, {"map", map}, {"window", window});
   one_impact orbits;
   cuts c = {0};
   double *crossings = NULL;

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "numeric/required.h"
 #include "numeric/vector.h"
 
 /* If more than this fraction of the gap rate is still negative after an impact, the impact map is invalid. */
@@ -44,6 +45,7 @@ ric_status grazing_check_local(const ric_grazing_local *local, const ric_system 
 }
 
 ric_status ric_grazing_local_init(ric_grazing_local *local, size_t numbers, ric_error *error) {
+  REQUIRE(error, {"local", local});
   *local = (ric_grazing_local){.numbers = numbers};
   local->eta = calloc(2 * (numbers ? numbers : 1), sizeof *local->eta);
   if (!local->eta)
@@ -53,6 +55,8 @@ ric_status ric_grazing_local_init(ric_grazing_local *local, size_t numbers, ric_
 }
 
 void ric_grazing_local_clear(ric_grazing_local *local) {
+  if (!local)
+    return;
   free(local->eta);
   *local = (ric_grazing_local){0};
 }
@@ -139,6 +143,7 @@ static ric_status find_all(const ric_system *s, double t, const double *x, doubl
 
 ric_status ric_grazing_local_find(const ric_system *s, size_t obstacle, double t, const double *x,
                                   ric_grazing_local *local, ric_error *error) {
+  REQUIRE(error, {"system", s}, {"x", x}, {"local", local});
   size_t size = s->coordinates + s->speeds;
   RIC_TRY(grazing_check_obstacle(s, obstacle, error));
   RIC_TRY(check_state(s, t, x, error));

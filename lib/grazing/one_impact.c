@@ -12,6 +12,7 @@
 
 #include "ricochet/grazing_map.h"
 #include "numeric/gsl_quiet.h"
+#include "numeric/required.h"
 
 /* Largest period of the closed forms: rounding errors accumulate, and d decreases by lambda^2 with each period. */
 enum { MOST_PERIOD = 10000 };
@@ -190,6 +191,7 @@ static ric_status find_state(one_impact *o, double y, double *z, ric_error *erro
 
 ric_status ric_grazing_cycle_at(const ric_grazing_map *map, size_t period, double y, ric_grazing_cycle *cycle,
                                 double *z, ric_error *error) {
+  REQUIRE(error, {"map", map}, {"cycle", cycle});
   one_impact orbits;
   if (!(y > 0 && isfinite(y)))
     return ric_fail(error, RIC_EINVAL, "y = %g, expected a finite number > 0", y);
@@ -219,6 +221,7 @@ static size_t solve_for_y(const one_impact *o, double d, double *y) {
 
 ric_status ric_grazing_cycles(const ric_grazing_map *map, size_t period, double d, ric_grazing_cycle *cycles,
                               size_t *count, ric_error *error) {
+  REQUIRE(error, {"map", map}, {"cycles", cycles}, {"count", count});
   one_impact orbits;
   ric_grazing_cycle list[2];
   double y[2];

@@ -7,6 +7,7 @@
 
 #include "numeric/constants.h"
 #include "numeric/number_block.h"
+#include "numeric/required.h"
 #include "numeric/vector.h"
 
 /* kappa on a section.
@@ -502,6 +503,7 @@ void section_close(section *k) {
 
 ric_status ric_grazing_section(ric_family *f, const ric_grazing *g, const ric_grazing_plane *plane,
                                ric_grazing_map *map, double *basis, ric_error *error) {
+  REQUIRE(error, {"family", f}, {"grazing", g}, {"map", map});
   section k;
   ric_status status = section_open(&k, f, g, plane, map, error);
   if (status == RIC_OK)

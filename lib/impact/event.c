@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "numeric/list.h"
+#include "numeric/required.h"
 #include "ricochet/event.h"
 #include "trajectory.h"
 
@@ -77,6 +78,7 @@ static void impact_tangents_hold(ric_trajectory *tr, size_t obstacle) {
 
 ric_status ric_trajectory_carry(ric_trajectory *tr, size_t columns, const double *dq, const double *du,
                                 ric_error *error) {
+  REQUIRE(error, {"trajectory", tr}, {"dq", unless_empty(columns, dq)});
   if (!tr->started)
     return ric_fail(error, RIC_EINVAL, "the trajectory has not been started");
   RIC_TRY(ric_flow_carry(tr->flow, columns, dq, du, error));

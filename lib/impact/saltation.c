@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "model/system_model.h"
+#include "numeric/required.h"
 #include "numeric/vector.h"
 #include "numeric/path_derivative.h"
 #include "ricochet/saltation.h"
@@ -355,6 +356,8 @@ static ric_status run_both(sequence *s, double *S, double *states, ric_error *er
 ric_status ric_saltation_find(const ric_system *system, double t, const double *q, const double *u,
                               const size_t *obstacles, size_t count, double grazing_tol, double *S, double *S_reverse,
                               ric_saltation_kind *kind, ric_error *error) {
+  REQUIRE(error, {"system", system}, {"q", q}, {"obstacles", unless_empty(count, obstacles)}, {"S", S}, {"kind", kind});
+  REQUIRE(error, {"u", unless_empty(system->speeds, u)});
   size_t size = system->coordinates + system->speeds, square = size * size;
   sequence s = {
       .system = system, .t = t, .grazing_tol = grazing_tol, .q = q, .u = u, .obstacles = obstacles, .count = count};

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "ricochet/trajectory.h"
+#include "numeric/required.h"
 
 /* Position of a time in a piece. */
 static double position(const ric_segment *piece, double time) {
@@ -133,6 +134,7 @@ void ric_trajectory_destroy(ric_trajectory **trajectory) {
 
 ric_status ric_trajectory_create(const ric_system *system, const ric_trajectory_options *options,
                                  ric_trajectory **trajectory, ric_error *error) {
+  REQUIRE(error, {"system", system}, {"trajectory", trajectory});
   ric_trajectory_options o = options ? *options : ric_trajectory_options_default();
   *trajectory = NULL;
   RIC_TRY(check_options(&o, error));
@@ -164,6 +166,7 @@ static ric_status check_start(const ric_trajectory *tr, double t, const double *
 }
 
 ric_status ric_trajectory_start(ric_trajectory *tr, double t, const double *q, const double *u, ric_error *error) {
+  REQUIRE(error, {"trajectory", tr}, {"q", q});
   tr->started = false;
   contacts_reset(tr);
   tr->tangents.kind = RIC_SALTATION_DIFFERENTIABLE;
@@ -332,6 +335,7 @@ static ric_flow_counts counts_since(const ric_flow *flow, ric_flow_counts before
 
 ric_status ric_trajectory_run(ric_trajectory *tr, double end, const ric_observer *observer, ric_run *run,
                               ric_error *error) {
+  REQUIRE(error, {"trajectory", tr}, {"run", run});
   ric_error local = {0};
   if (!tr->started)
     return ric_fail(error, RIC_EINVAL, "the trajectory has not been started");

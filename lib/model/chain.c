@@ -4,6 +4,7 @@
 
 #include "image_ring.h"
 #include "numeric/constants.h"
+#include "numeric/required.h"
 #include "ricochet/chain.h"
 #include "ricochet/system.h"
 
@@ -21,6 +22,7 @@ static ric_status check_floors(const ric_chain *chain, ric_error *error) {
 }
 
 ric_status ric_chain_check(const ric_chain *chain, ric_error *error) {
+  REQUIRE(error, {"chain", chain});
   if (chain->particles < 1)
     return ric_fail(error, RIC_EINVAL, "particles = 0, expected at least 1");
   if (chain->ends != RIC_ENDS_PERIODIC && chain->ends != RIC_ENDS_FIXED && chain->ends != RIC_ENDS_FREE)
@@ -55,6 +57,7 @@ double ric_chain_energy(const ric_chain *chain, const double *q, const double *v
 }
 
 ric_status ric_system_create_chain(const ric_chain *chain, ric_system **system, ric_error *error) {
+  REQUIRE(error, {"chain", chain}, {"system", system});
   *system = NULL;
   RIC_TRY(ric_chain_check(chain, error));
   ric_lattice lattice = ric_lattice_of_chain(chain);

@@ -4,6 +4,7 @@
 
 #include "image_ring.h"
 #include "numeric/constants.h"
+#include "numeric/required.h"
 #include "ricochet/chain.h"
 #include "ricochet/elementary.h"
 #include "ricochet/resonance.h"
@@ -113,6 +114,7 @@ static int by_parameter(const void *a, const void *b) {
 
 ric_status ric_chain_resonances(const ric_chain *chain, ric_along along, double period, double low, double high,
                                 ric_resonance *list, size_t capacity, size_t *count, ric_error *error) {
+  REQUIRE(error, {"chain", chain}, {"list", unless_empty(capacity, list)}, {"count", count});
   RIC_TRY(ric_chain_check(chain, error));
   if (!(low >= 0 && low <= high && high < INFINITY))
     return ric_fail(error, RIC_EINVAL, "range [%g, %g], expected 0 <= low <= high < infinity", low, high);

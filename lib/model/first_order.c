@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "numeric/required.h"
 #include "numeric/vector.h"
 #include "numeric/number_block.h"
 #include "numeric/path_derivative.h"
@@ -433,6 +434,7 @@ static bool allocate_first_order(first_order *s) {
 }
 
 ric_status ric_system_create_first_order(const ric_first_order *model, ric_system **system, ric_error *error) {
+  REQUIRE(error, {"model", model}, {"system", system});
   *system = NULL;
   RIC_TRY(check_model(model, error));
   first_order *s = calloc(1, sizeof *s);

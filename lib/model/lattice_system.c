@@ -8,6 +8,7 @@
 
 #include "ricochet/elementary.h"
 #include "ricochet/lattice.h"
+#include "numeric/required.h"
 
 ric_lattice ric_lattice_default(size_t particles, ric_ends ends) {
   return (ric_lattice){.particles = particles, .ends = ends, .mass = 1, .on_site = {.linear = 1}};
@@ -56,6 +57,7 @@ static ric_status check_force(const double *force, size_t n, const char *what, r
 }
 
 ric_status ric_lattice_check(const ric_lattice *lattice, ric_error *error) {
+  REQUIRE(error, {"lattice", lattice});
   size_t n = lattice->particles;
   if (n < 1)
     return ric_fail(error, RIC_EINVAL, "particles = 0, expected at least 1");
@@ -398,6 +400,7 @@ static ric_status take_lattice(lattice_system *s, const ric_lattice *l, ric_erro
 
 ric_status ric_system_create_lattice(const ric_lattice *lattice, const ric_obstacle *obstacles, size_t count,
                                      ric_system **system, ric_error *error) {
+  REQUIRE(error, {"lattice", lattice}, {"obstacles", unless_empty(count, obstacles)}, {"system", system});
   *system = NULL;
   RIC_TRY(ric_lattice_check(lattice, error));
   size_t n = lattice->particles;
@@ -416,6 +419,7 @@ ric_status ric_system_create_lattice(const ric_lattice *lattice, const ric_obsta
 }
 
 ric_status ric_system_set_lattice(ric_system *system, const ric_lattice *lattice, ric_error *error) {
+  REQUIRE(error, {"system", system}, {"lattice", lattice});
   static const char *const ends[] = {"periodic", "fixed", "free"};
   if (system->taylor != SYSTEM_LATTICE)
     return ric_fail(error, RIC_EINVAL, "the system is not a lattice, expected a system created from a lattice");

@@ -10,6 +10,7 @@
 
 #include "ricochet/elementary.h"
 #include "ricochet/mck.h"
+#include "numeric/required.h"
 
 /* Entries of a computed mass matrix differ by rounding from those of its transpose; larger differences are errors. */
 static const double symmetry_tol = 1e-12;
@@ -81,6 +82,7 @@ static ric_status check_vector(const char *name, const double *x, size_t n, ric_
 }
 
 ric_status ric_mck_check(const ric_mck *mck, ric_error *error) {
+  REQUIRE(error, {"mck", mck});
   size_t n = mck->coordinates;
   if (n < 1)
     return ric_fail(error, RIC_EINVAL, "coordinates = 0, expected at least 1");
@@ -467,6 +469,7 @@ static ric_status make(mck_system *s, const ric_mck *mck, ric_error *error) {
 
 ric_status ric_system_create_mck(const ric_mck *mck, const ric_obstacle *obstacles, size_t count, ric_system **system,
                                  ric_error *error) {
+  REQUIRE(error, {"mck", mck}, {"obstacles", unless_empty(count, obstacles)}, {"system", system});
   *system = NULL;
   RIC_TRY(ric_mck_check(mck, error));
   mck_system *s = calloc(1, sizeof *s);
@@ -484,6 +487,7 @@ ric_status ric_system_create_mck(const ric_mck *mck, const ric_obstacle *obstacl
 }
 
 ric_status ric_system_set_mck(ric_system *system, const ric_mck *mck, ric_error *error) {
+  REQUIRE(error, {"system", system}, {"mck", mck});
   if (system->taylor != SYSTEM_MCK)
     return ric_fail(error, RIC_EINVAL,
                     "the system is not an M-C-K system, expected a system created from an M-C-K model");

@@ -7,6 +7,7 @@
 #include "numeric/linear.h"
 #include "numeric/number_block.h"
 #include "numeric/path_derivative.h"
+#include "numeric/required.h"
 #include "numeric/vector.h"
 #include "system_model.h"
 #include "user_gap.h"
@@ -302,6 +303,7 @@ static bool allocate_mechanical(mechanical *s) {
 }
 
 ric_status ric_system_create_mechanical(const ric_mechanical *model, ric_system **system, ric_error *error) {
+  REQUIRE(error, {"model", model}, {"system", system});
   *system = NULL;
   RIC_TRY(check_model(model, error));
   mechanical *s = calloc(1, sizeof *s);

@@ -12,6 +12,7 @@
 #include "lattice_system.h"
 #include "mck_rows.h"
 #include "mck_system.h"
+#include "numeric/required.h"
 #include "numeric/vector.h"
 #include "numeric/linear.h"
 #include "ricochet/normal_modes.h"
@@ -277,6 +278,7 @@ static void set_shape(const problem *p, size_t mode, double *phi) {
 }
 
 ric_status ric_normal_modes(const ric_system *system, double *frequency, double *shape, ric_error *error) {
+  REQUIRE(error, {"system", system}, {"frequency", frequency}, {"shape", shape});
   problem p = {0};
   if (system->taylor == SYSTEM_USER)
     return ric_fail(error, RIC_EINVAL, "modes of a user system, expected a lattice or an M-C-K system");

@@ -4,6 +4,7 @@
 
 #include "ricochet/obstacle.h"
 #include "system_model.h"
+#include "numeric/required.h"
 
 static ric_status check_obstacle(const ric_obstacle *o, size_t j, size_t coordinates, ric_error *error) {
   if (o->coordinate >= coordinates)
@@ -21,6 +22,7 @@ static ric_status check_obstacle(const ric_obstacle *o, size_t j, size_t coordin
 }
 
 ric_status ric_obstacles_check(const ric_obstacle *obstacles, size_t count, size_t coordinates, ric_error *error) {
+  REQUIRE(error, {"obstacles", unless_empty(count, obstacles)});
   for (size_t j = 0; j < count; j++)
     RIC_TRY(check_obstacle(&obstacles[j], j, coordinates, error));
   return RIC_OK;
@@ -101,6 +103,7 @@ static ric_status check_same_place(const ric_obstacle *o, const ric_obstacle *no
 }
 
 ric_status ric_system_set_obstacles(ric_system *s, const ric_obstacle *obstacles, size_t count, ric_error *error) {
+  REQUIRE(error, {"system", s}, {"obstacles", unless_empty(count, obstacles)});
   if (!s->obstacles)
     return ric_fail(error, RIC_EINVAL, "obstacles for a user's system, expected a lattice or an M-C-K system");
   if (count != s->obstacle_count)

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "numeric/required.h"
 #include "numeric/vector.h"
 #include "numeric/path_derivative.h"
 #include "ricochet/system.h"
@@ -48,6 +49,8 @@ double ric_system_energy(const ric_system *system, double t, const double *q, co
 
 ric_status ric_system_rate(const ric_system *system, double t, const double *q, const double *u, double *q_rate,
                            double *u_rate, ric_error *error) {
+  REQUIRE(error, {"system", system}, {"q", q}, {"q_rate", q_rate});
+  REQUIRE(error, {"u", unless_empty(system->speeds, u)}, {"u_rate", unless_empty(system->speeds, u_rate)});
   const char *trouble = system->model->rate(system, NULL, t, q, u, q_rate, u_rate);
   return trouble ? ric_fail(error, RIC_ECALLBACK, "at t = %g: %s", t, trouble) : RIC_OK;
 }

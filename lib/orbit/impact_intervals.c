@@ -15,6 +15,7 @@
 #include "numeric/constants.h"
 #include "ricochet/elementary.h"
 #include "numeric/gsl_quiet.h"
+#include "numeric/required.h"
 
 enum { DEFAULT_SAMPLES = 64, MOST_SAMPLES = 1000000, MOST_ITERATIONS = 200, DIP_STEPS = 40 };
 
@@ -261,6 +262,7 @@ static ric_status check_range(const ric_impact_modes *m, double low, double high
 ric_status ric_impact_modes_intervals(ric_impact_modes *modes, double low, double high, size_t samples,
                                       int (*visit)(const ric_impact_interval *interval, void *user), void *user,
                                       ric_error *error) {
+  REQUIRE(error, {"modes", modes}, {"seen", called(visit != NULL)});
   RIC_TRY(check_range(modes, low, high, samples, error));
   search s = {.modes = modes,
               .low = low,

@@ -11,6 +11,7 @@
 #include "model/normal_modes.h"
 #include "numeric/constants.h"
 #include "numeric/number_block.h"
+#include "numeric/required.h"
 #include "numeric/vector.h"
 #include "ricochet/elementary.h"
 #include "ricochet/normal_modes.h"
@@ -148,6 +149,7 @@ static ric_status build_modes(ric_impact_modes *m, const ric_system *system, ric
 
 ric_status ric_impact_modes_create(const ric_system *system, size_t obstacle, ric_impact_modes **modes,
                                    ric_error *error) {
+  REQUIRE(error, {"system", system}, {"modes", modes});
   *modes = NULL;
   RIC_TRY(linear_part_is_all(system, error));
   RIC_TRY(check_obstacle(system, obstacle, error));
@@ -469,6 +471,7 @@ static ric_status check_room(const ric_impact_modes *m, const ric_orbit *orbit, 
 }
 
 ric_status ric_impact_modes_orbit(ric_impact_modes *modes, double period, ric_orbit *orbit, ric_error *error) {
+  REQUIRE(error, {"modes", modes}, {"orbit", orbit});
   periodic_response response;
   RIC_TRY(check_room(modes, orbit, error));
   RIC_TRY(check_period(modes, period, error));
@@ -493,6 +496,7 @@ ric_status ric_impact_modes_orbit(ric_impact_modes *modes, double period, ric_or
 
 ric_status ric_impact_modes_state(ric_impact_modes *modes, double period, double t, double *q, double *v,
                                   ric_error *error) {
+  REQUIRE(error, {"modes", modes}, {"q", q});
   periodic_response response;
   RIC_TRY(check_period(modes, period, error));
   if (!isfinite(t))

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include "solver.h"
+#include "numeric/required.h"
 
 enum { ORDER = 24 };
 
@@ -164,6 +165,8 @@ static void write_requests(const motion_piece *piece, void *user) {
 
 ric_status ric_orbit_states(ric_orbit_solver *solver, const ric_chain *chain, const ric_orbit *orbit,
                             const double *times, size_t count, double *q, double *v, ric_error *error) {
+  REQUIRE(error, {"solver", solver}, {"chain", chain}, {"orbit", orbit}, {"times", unless_empty(count, times)},
+          {"q", unless_empty(count, q)});
   RIC_TRY(ric_chain_check(chain, error));
   if (orbit->particles != chain->particles)
     return ric_fail(error, RIC_EINVAL, "orbit of %zu particles, expected %zu", orbit->particles, chain->particles);

@@ -5,6 +5,7 @@
 
 #include "ricochet/pattern.h"
 #include "unit_cell.h"
+#include "numeric/required.h"
 
 struct ric_pattern {
   size_t particles, start_count, half_count;
@@ -39,6 +40,8 @@ void ric_pattern_destroy(ric_pattern **pattern) {
 
 ric_status ric_pattern_create(size_t particles, const size_t *start, size_t start_count, const size_t *half,
                               size_t half_count, ric_pattern **pattern, ric_error *error) {
+  REQUIRE(error, {"start", unless_empty(start_count, start)}, {"half", unless_empty(half_count, half)},
+          {"pattern", pattern});
   *pattern = NULL;
   if (particles < 1)
     return ric_fail(error, RIC_EINVAL, "particles = 0, expected at least 1");
@@ -158,6 +161,7 @@ static bool comes_before(const unsigned char *word, size_t from, const unsigned 
 }
 
 ric_status ric_pattern_reduce(const ric_pattern *pattern, ric_ends ends, ric_symmetry *symmetry, ric_error *error) {
+  REQUIRE(error, {"pattern", pattern}, {"symmetry", symmetry});
   size_t n = ric_pattern_particles(pattern), best_from = 0;
   unsigned char *best = malloc(2 * n), *word = best ? best + n : NULL, *owner = best;
   if (!best)
@@ -187,6 +191,7 @@ static size_t image_of(size_t i, size_t n, ric_symmetry symmetry) {
 
 ric_status ric_pattern_image(const ric_pattern *pattern, ric_ends ends, ric_symmetry symmetry, ric_pattern **image,
                              ric_error *error) {
+  REQUIRE(error, {"pattern", pattern}, {"image", image});
   size_t n = ric_pattern_particles(pattern), m = ric_pattern_impacts(pattern), starts = 0, halves = 0;
   if (symmetry.shift >= n || (ends != RIC_ENDS_PERIODIC && symmetry.shift != 0))
     return ric_fail(error, RIC_EINVAL, "shift = %zu, expected %s", symmetry.shift,

@@ -8,6 +8,7 @@
 
 #include "solver.h"
 #include "numeric/gsl_quiet.h"
+#include "numeric/required.h"
 
 enum { MOST_RESONANCES = 100000 };
 
@@ -136,6 +137,8 @@ static ric_status search_range(family *f, double low, double high, collection *c
 ric_status ric_orbit_singular_points(ric_orbit_solver *solver, const ric_chain *chain, const ric_pattern *pattern,
                                      ric_along along, double period, double low, double high, double *points,
                                      size_t capacity, size_t *count, ric_error *error) {
+  REQUIRE(error, {"solver", solver}, {"chain", chain}, {"pattern", pattern}, {"points", unless_empty(capacity, points)},
+          {"count", count});
   RIC_TRY(ric_chain_check(chain, error));
   if (ric_pattern_particles(pattern) != chain->particles)
     return ric_fail(error, RIC_EINVAL, "pattern of %zu particles, expected %zu", ric_pattern_particles(pattern),

@@ -19,6 +19,7 @@
 #include "unit_cell.h"
 #include "admissibility.h"
 #include "numeric/gsl_quiet.h"
+#include "numeric/required.h"
 
 ric_orbit_options ric_orbit_options_default(void) {
   return (ric_orbit_options){.method = RIC_METHOD_IMPULSE,
@@ -51,6 +52,7 @@ static ric_status allocate_orbit(ric_orbit *orbit, size_t coordinates, size_t sp
 }
 
 ric_status ric_orbit_init(ric_orbit *orbit, size_t particles, size_t impacts, ric_error *error) {
+  REQUIRE(error, {"orbit", orbit});
   *orbit = (ric_orbit){.particles = particles, .impacts = impacts};
   if (particles < 1 || impacts < 1 || impacts > particles)
     return ric_fail(error, RIC_EINVAL, "orbit of %zu particles and %zu impacts, expected 1 <= impacts <= particles",
@@ -59,10 +61,13 @@ ric_status ric_orbit_init(ric_orbit *orbit, size_t particles, size_t impacts, ri
 }
 
 ric_status ric_orbit_init_for(ric_orbit *orbit, const ric_system *system, size_t impacts, ric_error *error) {
+  REQUIRE(error, {"orbit", orbit}, {"system", system});
   return allocate_orbit(orbit, ric_system_coordinates(system), ric_system_speeds(system), impacts, error);
 }
 
 void ric_orbit_clear(ric_orbit *orbit) {
+  if (!orbit)
+    return;
   free(orbit->q); /* the one block behind all arrays of numbers */
   free(orbit->impact_obstacle);
   *orbit = (ric_orbit){0};
@@ -247,6 +252,7 @@ static ric_status check_options(const ric_orbit_options *o, ric_error *error) {
 }
 
 ric_status ric_orbit_solver_create(const ric_orbit_options *options, ric_orbit_solver **solver, ric_error *error) {
+  REQUIRE(error, {"solver", solver});
   ric_orbit_options o = options ? *options : ric_orbit_options_default();
   *solver = NULL;
   RIC_TRY(check_options(&o, error));
@@ -280,6 +286,7 @@ double ric_orbit_bytes(const ric_chain *chain, const ric_pattern *pattern, ric_o
 
 static ric_status check_problem(const ric_orbit_solver *s, const ric_chain *chain, const ric_pattern *pattern,
                                 double period, const ric_orbit *orbit, ric_error *error) {
+  REQUIRE(error, {"solver", s}, {"chain", chain}, {"pattern", pattern});
   size_t n = chain->particles, m = ric_pattern_impacts(pattern);
   RIC_TRY(ric_chain_check(chain, error));
   if (!(period > 0 && period < INFINITY))
@@ -374,6 +381,7 @@ static ric_status solve_on_cell(ric_orbit_solver *s, const ric_chain *chain, con
 
 ric_status ric_orbit_solve(ric_orbit_solver *solver, const ric_chain *chain, const ric_pattern *pattern, double period,
                            ric_orbit *orbit, ric_error *error) {
+  REQUIRE(error, {"orbit", orbit});
   ric_error own, *e = error ? error : &own;
   orbit->period = period;
   orbit->mode = -1;

@@ -8,6 +8,7 @@
 
 #include "ricochet/verify.h"
 #include "solver.h"
+#include "numeric/required.h"
 
 const char *ric_verification_name(ric_verification_result result) {
   static const char *const names[] = {
@@ -192,6 +193,8 @@ static ric_status verify(const ric_system *system, const ric_orbit *orbit, const
 
 ric_status ric_verify(const ric_system *system, const ric_orbit *orbit, double start, const double *q, const double *u,
                       const ric_verify_options *options, ric_verification *verification, ric_error *error) {
+  REQUIRE(error, {"system", system}, {"orbit", orbit}, {"q", q}, {"verification", verification});
+  REQUIRE(error, {"u", unless_empty(system->speeds, u)});
   return verify(system, orbit, NULL, start, q, u, options, verification, error);
 }
 
@@ -206,6 +209,7 @@ static void find_obstacles(const ric_chain *chain, size_t *obstacle_of) {
 
 ric_status ric_orbit_verify(ric_orbit_solver *solver, const ric_chain *chain, const ric_orbit *orbit,
                             const ric_verify_options *options, ric_verification *verification, ric_error *error) {
+  REQUIRE(error, {"solver", solver}, {"chain", chain}, {"orbit", orbit}, {"verification", verification});
   *verification = (ric_verification){.result = RIC_NOT_RUN, .closure_error = NAN};
   RIC_TRY(ric_chain_check(chain, error));
   if (orbit->particles != chain->particles)

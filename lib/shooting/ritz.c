@@ -10,6 +10,7 @@
 
 #include "model/lattice_system.h"
 #include "numeric/constants.h"
+#include "numeric/required.h"
 #include "numeric/vector.h"
 #include "numeric/newton.h"
 #include "numeric/number_block.h"
@@ -165,6 +166,7 @@ ric_status ritz_check_system(ric_ritz *r, ric_error *error) {
 }
 
 ric_status ric_ritz_solve(ric_ritz *r, double *c, double period, int *iterations, ric_error *error) {
+  REQUIRE(error, {"ritz", r}, {"c", c});
   int count = 0;
   if (iterations)
     *iterations = 0;
@@ -228,6 +230,7 @@ static ric_status try_guess(ladder *l, bool *better, ric_error *error) {
 }
 
 ric_status ric_ritz_use(ric_ritz *r, size_t functions, double *c, ric_error *error) {
+  REQUIRE(error, {"ritz", r});
   if (!(functions >= 1 && functions <= r->most))
     return ric_fail(error, RIC_EINVAL, "functions = %zu, expected 1 to %zu", functions, r->most);
   size_t n = r->coordinates, before = ritz_width(r), after = functions + 1 - r->first;
@@ -281,6 +284,7 @@ static ric_status solve_rungs(ladder *l, double tolerance, double *c, ric_error 
 
 ric_status ric_ritz_refine(ric_ritz *r, ric_shooting *shooting, const double *z, double period, double tolerance,
                            double *c, double *error_q, ric_error *error) {
+  REQUIRE(error, {"ritz", r}, {"shooting", shooting}, {"z", z}, {"c", c});
   size_t unknowns = r->coordinates * r->stride + 1;
   ladder l = {.r = r, .shooting = shooting, .z = z, .period = period, .error_q = INFINITY};
   if (!(tolerance >= 0))
@@ -408,6 +412,7 @@ void ric_ritz_destroy(ric_ritz **ritz) {
 
 ric_status ric_ritz_create(const ric_system *system, size_t obstacle, const ric_ritz_options *options, ric_ritz **ritz,
                            ric_error *error) {
+  REQUIRE(error, {"system", system}, {"ritz", ritz});
   ric_ritz_options o = options ? *options : ric_ritz_options_default();
   *ritz = NULL;
   RIC_TRY(check_options(&o, error));

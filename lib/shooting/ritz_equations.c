@@ -4,6 +4,7 @@
 
 #include "model/lattice_system.h"
 #include "numeric/constants.h"
+#include "numeric/required.h"
 #include "numeric/vector.h"
 #include "ritz.h"
 
@@ -142,6 +143,7 @@ static void contact_equation(const equations *e) {
 
 ric_status ric_ritz_residual(ric_ritz *r, const double *c, double period, double *F, double *J, double *F_period,
                              ric_error *error) {
+  REQUIRE(error, {"ritz", r}, {"c", c}, {"F", F});
   RIC_TRY(ritz_check_system(r, error));
   RIC_TRY(ritz_check_numbers(r, c, period, error));
   const equations e = {.r = r,

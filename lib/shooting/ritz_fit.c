@@ -9,6 +9,7 @@
 #include "ricochet/elementary.h"
 #include "ritz.h"
 #include "numeric/gsl_quiet.h"
+#include "numeric/required.h"
 
 /* Fits omit functions that are linear combinations of others, up to this part of the first one. */
 static const double rank_tol = 1e-12;
@@ -182,6 +183,7 @@ static ric_status fit_all(fit *f, double frequency, double *c, ric_error *error)
 
 ric_status ric_ritz_fit(ric_ritz *r, ric_shooting *shooting, const double *z, double period, double frequency,
                         double *c, ric_error *error) {
+  REQUIRE(error, {"ritz", r}, {"shooting", shooting}, {"z", z}, {"c", c});
   fit f = {.r = r, .period = period};
   RIC_TRY(ritz_check_system(r, error));
   RIC_TRY(ritz_check_shooting(r, shooting, error));
@@ -224,6 +226,7 @@ static void compare(const ric_segment *piece, double end, void *user) {
 
 ric_status ric_ritz_error(ric_ritz *r, const double *c, double period, ric_shooting *shooting, const double *z,
                           double *error_q, double *error_v, ric_error *error) {
+  REQUIRE(error, {"ritz", r}, {"c", c}, {"shooting", shooting}, {"z", z});
   comparison k = {.r = r, .c = c, .period = period};
   const shooting_observer observer = {.segment = compare, .user = &k};
   RIC_TRY(ritz_check_system(r, error));

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "numeric/required.h"
 #include "numeric/vector.h"
 #include "numeric/newton.h"
 #include "numeric/number_block.h"
@@ -78,6 +79,8 @@ static ric_status sample(ric_shooting *s, const double *z, double given, samplin
 
 ric_status ric_shooting_states(ric_shooting *s, const double *z, double given, size_t count, double *q, double *v,
                                ric_error *error) {
+  REQUIRE(error, {"shooting", s}, {"z", z}, {"q", q});
+  REQUIRE(error, {"v", unless_empty(s->system->speeds, v)});
   bool even = s->arcs.kind == RIC_MOTION_EVEN;
   double period;
   if (count < 2 || count > SIZE_MAX / 64 / s->arcs.size)
@@ -138,6 +141,7 @@ static ric_status verify(ric_shooting *s, const double *z, double given, const r
 
 ric_status ric_shooting_verify(ric_shooting *s, const double *z, double given, const ric_orbit *orbit,
                                const ric_verify_options *options, ric_verification *verification, ric_error *error) {
+  REQUIRE(error, {"shooting", s}, {"z", z}, {"orbit", orbit}, {"verification", verification});
   *verification = (ric_verification){.result = RIC_NOT_RUN, .closure_error = NAN};
   if (orbit->outcome != RIC_ADMISSIBLE) {
     snprintf(verification->reason, sizeof verification->reason, "the orbit is not admissible");
@@ -196,6 +200,7 @@ static ric_status check_lambda(const ric_shooting *s, const double *z, ric_error
 
 ric_status ric_shooting_solve(ric_shooting *s, double *z, double given, double tolerance, int *iterations,
                               ric_error *error) {
+  REQUIRE(error, {"shooting", s}, {"z", z});
   int count = 0;
   double tol = tolerance == 0 ? default_tolerance : tolerance;
   search k = {.s = s, .given = given};
@@ -279,6 +284,10 @@ void ric_shooting_destroy(ric_shooting **shooting) {
 
 ric_status ric_shooting_create(ric_system *system, const ric_shooting_problem *problem, ric_shooting **shooting,
                                ric_error *error) {
+  REQUIRE(error, {"system", system}, {"problem", problem}, {"shooting", shooting});
+  REQUIRE(error, {"at_start", unless_empty(problem->start_count, problem->at_start)},
+          {"at_half", unless_empty(problem->half_count, problem->at_half)},
+          {"sequence", unless_empty(problem->count, problem->sequence)});
   ric_shooting *s = calloc(1, sizeof *s);
   *shooting = NULL;
   if (!s)
@@ -385,6 +394,8 @@ static ric_status set_phase(ric_shooting *s, const double *z, ric_error *error) 
 
 ric_status ric_shooting_guess(ric_shooting *s, const double *q, const double *u, const double *times, double period,
                               double *z, ric_error *error) {
+  REQUIRE(error, {"shooting", s}, {"q", q}, {"z", z});
+  REQUIRE(error, {"u", unless_empty(s->system->speeds, u)}, {"times", unless_empty(s->arcs.sequence_count, times)});
   RIC_TRY(check_times(s, times, period, error));
   guess_numbers(s, q, u, times, period, z);
   RIC_TRY(set_phase(s, z, error));

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "shooting.h"
+#include "numeric/required.h"
 
 /* One piece of a motion: its beginning, its end, and the derivatives of its end. */
 
@@ -336,5 +337,6 @@ ric_status shooting_evaluate(ric_shooting *s, const double *z, double given, dou
 
 ric_status ric_shooting_residual(ric_shooting *s, const double *z, double given, double *F, double *J, double *F_given,
                                  ric_error *error) {
+  REQUIRE(error, {"shooting", s}, {"z", z}, {"F", F});
   return shooting_evaluate(s, z, given, F, J, F_given, NULL, error);
 }

@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "numeric/required.h"
 #include "numeric/vector.h"
 #include "orbit/admissibility.h"
 #include "ricochet/elementary.h"
@@ -95,6 +96,7 @@ static void enlarge_amplitude(const ric_segment *piece, double end, void *user) 
 }
 
 ric_status ric_shooting_amplitude(ric_shooting *s, const double *z, double given, double *amplitude, ric_error *error) {
+  REQUIRE(error, {"shooting", s}, {"z", z}, {"amplitude", amplitude});
   const shooting_observer observer = {.segment = enlarge_amplitude, .user = amplitude};
   *amplitude = 0;
   return shooting_evaluate(s, z, given, s->residual, NULL, NULL, &observer, error);
@@ -358,6 +360,7 @@ ric_status shooting_verdict(ric_shooting *s, const double *z, double given, ric_
 }
 
 ric_status ric_shooting_orbit(ric_shooting *s, const double *z, double given, ric_orbit *orbit, ric_error *error) {
+  REQUIRE(error, {"shooting", s}, {"z", z}, {"orbit", orbit});
   RIC_TRY(shooting_examine(s, z, given, EXAMINE_ORBIT, NULL, NULL, NULL, orbit, error));
   return shooting_verdict(s, z, given, orbit, error);
 }

@@ -8,6 +8,7 @@
 #include "ricochet/elementary.h"
 #include "shooting.h"
 #include "numeric/gsl_quiet.h"
+#include "numeric/required.h"
 
 /* Derivatives of the state of a motion between two of its times. */
 
@@ -164,6 +165,7 @@ static void shooting_spectrum_identity(shooting_spectrum *k) {
 
 ric_status ric_shooting_transfer(ric_shooting *s, const double *z, double given, double from, double to, double *x,
                                  double *matrix, ric_error *error) {
+  REQUIRE(error, {"shooting", s}, {"z", z}, {"x", x});
   const size_t size = s->arcs.size;
   transfer k = {.s = s, .z = z, .x = x, .matrix = matrix};
   RIC_TRY(shooting_period(s, z, given, &k.period, error));
@@ -410,6 +412,7 @@ ric_status shooting_multipliers(ric_shooting *s, const ric_multiplier_options *o
 
 ric_status ric_shooting_multipliers(ric_shooting *s, const double *z, double given,
                                     const ric_multiplier_options *options, ric_multipliers *m, ric_error *error) {
+  REQUIRE(error, {"shooting", s}, {"z", z}, {"multipliers", m});
   RIC_TRY(shooting_examine(s, z, given, EXAMINE_SPECTRUM, NULL, NULL, NULL, NULL, error));
   return shooting_multipliers(s, options, m, error);
 }

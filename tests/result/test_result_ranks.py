@@ -135,7 +135,7 @@ def check_xarray(path):
 
 def write(build, path, *sizes, ranks, program="result_ranks"):
     """The finished mpirun of a program that writes a made-up result."""
-    command = ["mpirun", "--quiet", "--oversubscribe", "-n", str(ranks), build / "bin" / program, path, *sizes]
+    command = ["mpirun", "--oversubscribe", "-n", str(ranks), build / "bin" / program, path, *sizes]
     return subprocess.run(list(map(str, command)), cwd=path.parent, env=environment(), capture_output=True, text=True,
                           timeout=120)
 

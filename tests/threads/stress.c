@@ -1,8 +1,8 @@
-/* Objects of the library in several threads, one of each per thread: the scenarios of the benchmarks, which build all
- * they use, run side by side, each thread in another order. A scenario that does not give what it promises, a crash
- * and, with ThreadSanitizer, a race is a failure.
+/* Objects of the library in several threads, one of each per thread: the scenarios of the benchmarks and those of
+ * rooms.h, which build all they use, run side by side, each thread in another order. A scenario that does not give what
+ * it promises, or another value than in another thread, a crash and, with ThreadSanitizer, a race is a failure.
  *
- * usage: stress THREADS [SCENARIO ...]   by default the scenarios below, which take some two seconds */
+ * usage: stress THREADS [SCENARIO ...]   by default those below and all of rooms.h, which take some two seconds */
 #include <pthread.h>
 #include <stdatomic.h>
 #include <stdint.h>
@@ -12,8 +12,9 @@
 #include <time.h>
 
 #include "bench.h"
+#include "rooms.h"
 
-enum { MOST_THREADS = 64, MOST_SCENARIOS = 128, LISTS = 8 };
+enum { MOST_THREADS = 64, MOST_SCENARIOS = 128, LISTS = 8, MOST_ROOMS = 32 };
 
 #ifdef __SANITIZE_THREAD__ /* which finds a race without a collision */
 enum { SOLVERS = 300 };
@@ -67,21 +68,61 @@ static const benchmark *scenario_named(const char *name) {
   return NULL;
 }
 
-static int choose(const char *const *names, size_t number) {
-  for (size_t i = 0; i < number && count < MOST_SCENARIOS; i++) {
-    const benchmark *b = scenario_named(names[i]);
-    if (!b) {
-      fprintf(stderr, "stress: there is no scenario %s\n", names[i]);
-      return 1;
-    }
+/* What the benchmarks leave out. */
+static const room_scenario *rooms[MOST_ROOMS];
+static size_t room_count;
+static double values[MOST_THREADS][MOST_ROOMS];
+
+/* Those of a list with the name, all without one. */
+static void choose_rooms(const room_scenario *list, const char *name) {
+  for (; list->name && room_count < MOST_ROOMS; list++)
+    if (!name || strcmp(list->name, name) == 0)
+      rooms[room_count++] = list;
+}
+
+static int choose(const char *name) {
+  const benchmark *b = scenario_named(name);
+  const size_t before = room_count;
+  choose_rooms(motion_scenarios, name);
+  choose_rooms(grazing_scenarios, name);
+  if (b && count < MOST_SCENARIOS)
     chosen[count++] = b;
-  }
+  if (b || room_count > before)
+    return 0;
+  fprintf(stderr, "stress: there is no scenario %s\n", name);
+  return 1;
+}
+
+static int choose_usual(void) {
+  choose_rooms(motion_scenarios, NULL);
+  choose_rooms(grazing_scenarios, NULL);
+  for (size_t i = 0; i < sizeof usual / sizeof *usual; i++)
+    if (choose(usual[i]) != 0)
+      return 1;
   return 0;
 }
 
 /* --- threads --- */
 
 static atomic_int failures;
+
+static void run_room(size_t i, size_t thread) {
+  ric_error error = {0};
+  if (rooms[i]->run(&values[thread][i], &error) == RIC_OK)
+    return;
+  fprintf(stderr, "stress: %s in thread %zu: %s\n", rooms[i]->name, thread, error.message);
+  atomic_fetch_add(&failures, 1);
+}
+
+static void compare_values(size_t threads) {
+  for (size_t t = 1; t < threads; t++)
+    for (size_t i = 0; i < room_count; i++)
+      if (memcmp(&values[t][i], &values[0][i], sizeof values[t][i]) != 0) {
+        fprintf(stderr, "stress: %s: %.17g in thread %zu, expected %.17g\n", rooms[i]->name, values[t][i], t,
+                values[0][i]);
+        atomic_fetch_add(&failures, 1);
+      }
+}
 
 static void run_one(const benchmark *b, size_t thread) {
   const work_done done = b->run(b->argument, b->variant);
@@ -98,6 +139,8 @@ static void *run_all(void *user) {
     const benchmark *b = chosen[(i + begin * 7) % count];
     run_one(b, begin);
   }
+  for (size_t i = 0; i < room_count; i++)
+    run_room((i + begin * 5) % room_count, begin);
   for (size_t i = 0; i < SOLVERS; i++) /* solvers come and go: their plans are made and destroyed side by side */
     run_one(&benchmarks[0], begin);
   return NULL;
@@ -110,13 +153,17 @@ int main(int argc, char **argv) {
     fprintf(stderr, "stress: %s threads, expected 1 to %d\n", argv[1], MOST_THREADS);
     return 2;
   }
-  if (argc > 2 ? choose((const char *const *)argv + 2, (size_t)argc - 2) : choose(usual, sizeof usual / sizeof *usual))
+  if (argc <= 2 && choose_usual() != 0)
     return 2;
+  for (int i = 2; i < argc; i++)
+    if (choose(argv[i]) != 0)
+      return 2;
   for (long i = 0; i < threads; i++)
     if (pthread_create(&running[i], NULL, run_all, (void *)(uintptr_t)i) != 0)
       return 1;
   for (long i = 0; i < threads; i++)
     pthread_join(running[i], NULL);
-  printf("%ld threads, %zu scenarios each: %d failures\n", threads, count, failures);
+  compare_values((size_t)threads);
+  printf("%ld threads, %zu scenarios each: %d failures\n", threads, count + room_count, failures);
   return failures != 0;
 }

@@ -57,6 +57,12 @@ void hdf5_out_of_memory(void) {
   failure.memory = true;
 }
 
+/* From 1.14 on HDF5 keeps nothing of what its filters say. In results they are checksums. */
+static void name_the_filter(message *reason) {
+  if (strcmp(reason->text, "filter returned failure during read") == 0)
+    snprintf(reason->text, sizeof reason->text, "data error detected by a filter, the Fletcher32 checksum");
+}
+
 /* HDF5's own file drivers wrap the system's words: "..., errno = 28, error message = 'No space left on device', ...".
  */
 static void keep_system_words(message *reason) {
@@ -76,6 +82,7 @@ int hdf5_refuse(const file_place *at, const char *what, ...) {
   failure.reason.text[0] = '\0';
   if (failure.memory || !reason.text[0])
     snprintf(reason.text, sizeof reason.text, "%s", failure.memory ? "out of memory" : "unknown reason");
+  name_the_filter(&reason);
   keep_system_words(&reason);
   va_list arguments;
   va_start(arguments, what);

@@ -43,7 +43,7 @@ RIC_API ric_status ric_basin_create(size_t size, const ric_basin_options *option
 RIC_API void ric_basin_destroy(ric_basin **basin);
 
 /** Adds the run of a start.
- *  @param run  of which kind, period and lowest [size] count; lowest may be NULL if the run has no period
+ *  @param run  of which kind, period and, if it has a period, lowest [size] are read
  *  @param label  set to the index of its attractor, RIC_BASIN_NONE or RIC_BASIN_OTHER
  *  @returns RIC_EINVAL for a periodic run without `lowest`; RIC_ENOMEM */
 RIC_API ric_status ric_basin_add(ric_basin *basin, const ric_attractor *run, int64_t *label, ric_error *error);

@@ -104,7 +104,7 @@ RIC_API ric_status ric_bypass_map(ric_bypass *bypass, double t, const double *x,
                                   ric_error *error);
 
 /** C(x) to leading order, (4.19), with the exact psi(x) and the coefficients of the grazing point. Parameters as above.
- */
+ *  @param seen  may be NULL */
 RIC_API ric_status ric_bypass_leading(ric_bypass *bypass, const ric_grazing_local *at_grazing, double t,
                                       const double *x, double *image, ric_bypass_seen *seen, ric_error *error);
 

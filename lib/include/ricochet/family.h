@@ -106,7 +106,8 @@ typedef struct ric_family_point {
 
 typedef struct ric_family ric_family;
 
-/** @returns RIC_EINVAL as ric_shooting_create and ric_curve_create; RIC_ELIMIT for multipliers of too large a state;
+/** @param options  copied, NULL for the defaults
+ *  @returns RIC_EINVAL as ric_shooting_create and ric_curve_create; RIC_ELIMIT for multipliers of too large a state;
  *           RIC_ENOMEM. */
 RIC_API ric_status ric_family_create(const ric_family_problem *problem, const ric_family_options *options,
                                      ric_family **family, ric_error *error);
@@ -116,6 +117,7 @@ RIC_API void ric_family_destroy(ric_family **family);
 RIC_API ric_shooting *ric_family_shooting(ric_family *family);
 
 /** The motion at a parameter from a guess (ric_shooting_guess), by ric_shooting_solve.
+ *  @param q, u, times  of the guess; u NULL if m = 0, times NULL if there are none
  *  @param period  of the guess
  *  @param z  [unknowns], set
  *  @param iterations  of Newton's method; may be NULL

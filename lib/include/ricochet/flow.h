@@ -55,7 +55,7 @@ RIC_API void ric_flow_destroy(ric_flow **flow);
 
 /** Sets time and state. Discards all history, and reads the system's numbers again if they have changed (system.h):
  *  new numbers of the same structure cost O(n) and no memory; new nonlinear, damping or forcing terms allocate.
- *  @param q, u  [n], [m], copied; finite, else RIC_EINVAL
+ *  @param q, u  [n], [m], copied; finite, else RIC_EINVAL; u NULL if m = 0
  *  @returns RIC_ENOMEM. */
 RIC_API ric_status ric_flow_start(ric_flow *flow, double t, const double *q, const double *u, ric_error *error);
 

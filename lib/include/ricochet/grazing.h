@@ -93,6 +93,7 @@ typedef struct ric_grazing_search {
 /** Follows a family from a solution to its first grazing point at which the motion passes through no obstacle
  *  elsewhere. Unlike ric_grazing_find it ignores grazing points of inadmissible motions and reports an outcome instead
  *  of an error.
+ *  @param options  NULL for the defaults
  *  @param grazing  set if found; otherwise undefined
  *  @returns RIC_OK with an outcome; RIC_EINVAL for even motions and options out of range; RIC_ESTOPPED, RIC_ENOMEM */
 RIC_API ric_status ric_grazing_search_along(ric_family *family, double *z, double parameter,
@@ -103,6 +104,7 @@ RIC_API ric_status ric_grazing_search_along(ric_family *family, double *z, doubl
  *  two parameters.
  *  @param z  [unknowns]
  *  @param obstacle, time  of the grazing point: the minimum of the gap nearest to this time is used
+ *  @param options  NULL for the defaults
  *  @returns as ric_grazing_find */
 RIC_API ric_status ric_grazing_take(ric_family *family, const double *z, double parameter, size_t obstacle, double time,
                                     const ric_grazing_options *options, ric_grazing *grazing, ric_error *error);
@@ -145,8 +147,8 @@ typedef struct ric_grazing_curve_point {
  *  @param from  a grazing motion of it
  *  @param options  of the curve, whose parameter is the second one; NULL for those of the family
  *  @param count  of coefficients, at most RIC_GRAZING_CURVE_COEFFICIENTS
- *  @param seen  called with every point; non-zero ends the run. If no verdict can be computed at a step, because the
- *         gap has no minimum or eigenvalues fail, the run ends and gives the reason
+ *  @param seen  called with every point, NULL for none; non-zero ends the run. If no verdict can be computed at a step,
+ *         because the gap has no minimum or eigenvalues fail, the run ends and gives the reason
  *  @returns as ric_family_trace, and as ric_grazing_section and ric_grazing_criterion_find if they fail at a point
  *           that is to be passed to `seen`; RIC_EINVAL. */
 RIC_API ric_status ric_grazing_trace(ric_family *family, const ric_grazing *from, const ric_curve_options *options,

@@ -83,7 +83,7 @@ RIC_API ric_status ric_guess_grazing_mode(const ric_guess_problem *problem, size
 /** Replaces the guess by the motion of its period, and computes its energy: to follow a family at given energies if a
  *  period is known.
  *  @param shooting  of the motion with the period given
- *  @param times  [count] as ric_shooting_guess
+ *  @param times  [count] as ric_shooting_guess; NULL if there are none
  *  @param energy  set
  *  @returns as ric_shooting_guess, ric_shooting_solve and ric_shooting_orbit */
 RIC_API ric_status ric_guess_solve(ric_shooting *shooting, const double *times, ric_guess *guess, double *energy,

@@ -21,7 +21,7 @@ typedef struct ric_monodromy {
 } ric_monodromy;
 
 /** @param start  time of the state, not that of an impact
- *  @param q, u  [n], [m] state there
+ *  @param q, u  [n], [m] state there; u NULL if m = 0
  *  @param period  > 0
  *  @param options  of the run, NULL for the defaults
  *  @param M  [n + m][n + m] row-major, state (q, u)
@@ -32,6 +32,7 @@ RIC_API ric_status ric_monodromy_find(const ric_system *system, double start, co
 
 /** The monodromy matrix of an orbit of a chain, from t = T/4 on, halfway between its impacts.
  *  @param solver  provides the state there
+ *  @param options  of the run, NULL for the defaults
  *  @param M  [2n][2n] row-major, state (q, v)
  *  @returns RIC_EINVAL for an orbit without a state. */
 RIC_API ric_status ric_orbit_monodromy(ric_orbit_solver *solver, const ric_chain *chain, const ric_orbit *orbit,

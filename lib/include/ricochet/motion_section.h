@@ -61,6 +61,7 @@ RIC_API ric_status ric_motion_section_set_period(ric_motion_section *section, do
  *  States within 1e-9 of the largest number count as equal, whatever the extent of the attractor: slow impacts
  *  amplify rounding that much. If a motion cannot be continued (an outcome of the run other than `completed`), the
  *  attractor is `failed`, with that outcome and its reason, or `diverged` if the state has blown up.
+ *  @param options  NULL for the defaults
  *  @param attractor  with its start, a state in the form of the section. On impact sections any state, also one away
  *         from obstacles, with its time as the last number: the first iterate is its next impact
  *  @returns RIC_EINVAL for options out of range, more exponents than n + m, and starts below an obstacle; RIC_ENOMEM,

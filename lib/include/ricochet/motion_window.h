@@ -32,7 +32,7 @@ typedef struct ric_motion_window {
  *  @param periods  of the forcing, after which the motion repeats
  *  @param p  parameter at which it was found
  *  @param low, high  bounds, low < p < high
- *  @param t, q, u  its state on the attractor at time t, not at an impact
+ *  @param t, q, u  its state on the attractor at time t, not at an impact; u NULL if m = 0
  *  @param options  of the continuation runs, with lengths relative to p; NULL: the defaults, with first steps of p /
  *         1000 and special points located to 1e-12 of p. Bounds and direction are ignored
  *  @returns RIC_EINVAL for motions of other kinds, parameters out of order, and a motion that repeats before its

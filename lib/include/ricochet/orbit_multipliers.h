@@ -50,6 +50,7 @@ RIC_API ric_orbit_multiplier_options ric_orbit_multiplier_options_default(void);
 
 /** Multipliers of a solved orbit of a chain.
  *  @param solver  the one that solved it; it provides modes and workspace
+ *  @param options  NULL for the defaults
  *  @param multipliers  initialised for 2n
  *  @returns RIC_EINVAL for arguments that do not match; RIC_ELIMIT for the reduced and monodromy methods beyond
  *           RIC_REDUCED_PARTICLES; RIC_ENUMERIC if eigenvalues do not converge or every contour passes too close to a

@@ -5,8 +5,11 @@
  * references in docs/theory.md. Numbers in round brackets are equations there. docs/glossary.md maps their words to the
  * terms of the field.
  *
- * Pointers to objects, structs and arrays are never NULL unless the docstring of the function says that they may be;
- * errors always may, and a destroying function does nothing with NULL. Nothing else is promised of NULL.
+ * NULL: a function that returns a ric_status, with the ric_error last, refuses NULL by RIC_EINVAL and the name of the
+ * parameter: for every object, struct, array and callback. What its docstring says may be NULL may be so, and arrays of
+ * length 0, errors, and the `user` of callbacks. Destroying and clearing functions do nothing with NULL. All other
+ * functions do not look: NULL is not for them, unless their docstring says so. No function can tell how long an array
+ * is: it has the length that the docstring states.
  *
  * Threads: any number of them may use the library at a time, each with objects of its own. Structs of numbers,
  * patterns, orbits and maps may be read by several threads at once. All other objects are for one thread at a time,

@@ -42,7 +42,7 @@ typedef enum ric_saltation_kind {
 RIC_API const char *ric_saltation_name(ric_saltation_kind kind);
 
 /** Saltation matrix of simultaneous impacts, without rigid contacts that stick before or after.
- *  @param q, u  [n], [m] state before, gaps of the obstacles zero
+ *  @param q, u  [n], [m] state before, gaps of the obstacles zero; u NULL if m = 0
  *  @param obstacles  [count] that are hit
  *  @param grazing_tol  > 0: impacts with a gap rate below it, or a penetration depth below it, are grazing
  *  @param S  [n + m][n + m] row-major, state (q, u): impacts in the order given, repeated for coupled contacts until no

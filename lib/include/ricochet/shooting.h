@@ -79,7 +79,8 @@ RIC_API size_t ric_shooting_impacts(const ric_shooting *shooting);
 RIC_API ric_flow_counts ric_shooting_counted(const ric_shooting *shooting);
 
 /** Initial z from a guess of the motion. States of later arcs follow from the flow and the impact law.
- *  @param q, u  [n], [m] first state: at t = 0+ (even), after the first impact, or at t = 0 without impacts
+ *  @param q, u  [n], [m] first state: at t = 0+ (even), after the first impact, or at t = 0 without impacts;
+ *               u NULL if m = 0
  *  @param times  [count] of the impacts of `sequence`, increasing; NULL if there are none
  *  @param period  > 0
  *  @param z  [unknowns], set
@@ -140,6 +141,7 @@ RIC_API ric_status ric_shooting_states(ric_shooting *shooting, const double *z, 
 /** Verifies the orbit of a solution by an event-driven run (verify.h), from within the longest time between its impacts
  *  on; `not_run` unless it is admissible.
  *  @param orbit  of the solution, from ric_shooting_orbit
+ *  @param options  NULL for the defaults
  *  @returns as ric_verify, ric_shooting_residual. */
 RIC_API ric_status ric_shooting_verify(ric_shooting *shooting, const double *z, double given, const ric_orbit *orbit,
                                        const ric_verify_options *options, ric_verification *verification,
@@ -147,6 +149,7 @@ RIC_API ric_status ric_shooting_verify(ric_shooting *shooting, const double *z, 
 
 /** Floquet multipliers of a solution, admissible or not, from the tangent vectors of its arcs; for even motions by the
  *  n x n block (M + M^-1) / 2, see orbit_multipliers.h.
+ *  @param options  NULL for the defaults
  *  @param multipliers  initialised for n + m; `unknown` if an impact grazes
  *  @returns as ric_shooting_residual; RIC_ENUMERIC if eigenvalues do not converge. */
 RIC_API ric_status ric_shooting_multipliers(ric_shooting *shooting, const double *z, double given,

@@ -23,6 +23,7 @@ typedef struct ric_system ric_system;
  *  @returns RIC_EINVAL with the field, the value and what is allowed; RIC_ENOMEM. */
 RIC_API ric_status ric_system_create_lattice(const ric_lattice *lattice, const ric_obstacle *obstacles, size_t count,
                                              ric_system **system, ric_error *error);
+/** @param obstacles  [count], may be NULL for none */
 RIC_API ric_status ric_system_create_mck(const ric_mck *mck, const ric_obstacle *obstacles, size_t count,
                                          ric_system **system, ric_error *error);
 RIC_API ric_status ric_system_create_mechanical(const ric_mechanical *model, ric_system **system, ric_error *error);
@@ -66,6 +67,7 @@ RIC_API double ric_system_gap_rate(const ric_system *system, size_t obstacle, do
 RIC_API double ric_system_energy(const ric_system *system, double t, const double *q, const double *u);
 
 /** Rates of the free motion: q_rate [n], u_rate [m]; including Hertz contacts that are pressed at q.
+ *  @param u, u_rate  NULL if m = 0
  *  @returns RIC_ECALLBACK if a callback fails or gives values that are not finite, or a mass matrix is not positive
  *           definite. */
 RIC_API ric_status ric_system_rate(const ric_system *system, double t, const double *q, const double *u, double *q_rate,

@@ -88,9 +88,10 @@ RIC_API ric_status ric_trajectory_create(const ric_system *system, const ric_tra
                                          ric_trajectory **trajectory, ric_error *error);
 RIC_API void ric_trajectory_destroy(ric_trajectory **trajectory);
 
-/** Sets time and state [n], [m] (u NULL if m = 0). Discards the history, and reads the system's numbers again if they
+/** Sets time and state. Discards the history, and reads the system's numbers again if they
  *  have changed (system.h). Closed contacts are evaluated when the run continues: those with a negative gap rate have
  *  an impact at once, those that are pressed stick.
+ *  @param q, u  [n], [m]; u NULL if m = 0
  *  @returns RIC_EINVAL for a state that is not finite or lies below a rigid obstacle by more than grazing_tol, naming
  *           the obstacle and the gap, and for changed obstacles that leave no room, unless pass_rigid is set;
  *           RIC_ENOMEM. */

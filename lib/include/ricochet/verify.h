@@ -52,7 +52,7 @@ RIC_API ric_verify_options ric_verify_options_default(void);
  * the orbit and its arrays of states are not read.
  *  @param orbit  its period, impact_time and impact_obstacle are read
  *  @param start  time of the state, with a distance above impact_time_tol from every impact
- *  @param q, u  [n], [m] state there
+ *  @param q, u  [n], [m] state there; u NULL if m = 0
  *  @param options  NULL for the defaults
  *  @returns RIC_OK with a result; RIC_EINVAL for an orbit of other numbers of coordinates or speeds, a period that is
  *           not positive, unknown obstacles, an impact at `start`; RIC_EINVAL for options as ric_trajectory_create,
@@ -64,6 +64,7 @@ RIC_API ric_status ric_verify(const ric_system *system, const ric_orbit *orbit, 
 /** Verifies an orbit of a chain, from t = T/4 on, halfway between its impacts; `not_run` unless it is admissible. Those
  *  of shooting: ric_shooting_verify.
  *  @param solver  gives the state there
+ *  @param options  NULL for the defaults
  *  @returns as ric_verify, ric_orbit_states. */
 RIC_API ric_status ric_orbit_verify(ric_orbit_solver *solver, const ric_chain *chain, const ric_orbit *orbit,
                                     const ric_verify_options *options, ric_verification *verification,
