@@ -3,13 +3,11 @@
  *   FAULT_CALLS   memory: malloc and its kin, in the program and in every library
  *                 files: calls on files whose path contains FAULT_NAME, and on what they have opened
  *   FAULT_ONLY    if set, of these only the calls of one function: close
- *   FAULT_AT      the so many-th call fails, counted from 1 on from the beginning of main; 0: none
- *   FAULT_ON      if set, all later calls fail as well
- *   FAULT_ERROR   the errno of files, a number; memory has ENOMEM
- *   FAULT_PLACES  if set, the log gets a line for every call whose innermost callers differ from all before, with the
- *                 innermost
- *   FAULT_LOG     a file that gets a line for the fault, with the stack that leads to it; one for a deadly signal, with
- *                 its stack; and the number of calls at the end
+ *   FAULT_AT      the so many-th call fails, counted from 1 on from the beginning of main, with those of child
+ * processes; 0: none FAULT_ON      if set, all later calls fail as well FAULT_ERROR   the errno of files, a number;
+ * memory has ENOMEM FAULT_PLACES  if set, the log gets a line for every call whose innermost callers differ from all
+ * before, with the innermost FAULT_LOG     a file that gets a line for the fault, with the stack that leads to it; one
+ * for a deadly signal, with its stack; and the number of calls at the end
  *
  * A close that fails has closed. A stack is `library(function)` or `library+offset`, the innermost frame first. */
 #define _GNU_SOURCE /* RTLD_NEXT, dladdr, _dl_find_object */
@@ -26,6 +24,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/file.h>
+#include <sys/mman.h>
 #include <sys/stat.h>
 #include <sys/uio.h>
 #include <unistd.h>
@@ -35,7 +34,7 @@
 enum { MOST_FILES = 1024, MOST_FRAMES = 40, MOST_TEXT = 8192, MOST_CALLERS = 12, MOST_PLACES = 1 << 16 };
 
 static bool in_memory, in_files, goes_on, lists_places, counting;
-static unsigned long calls, at;
+static unsigned long *calls, at; /* calls: in memory that child processes share */
 static int error_number, log_file = -1;
 static const char *name = "", *only = "";
 static bool is_watched[MOST_FILES]; /* by file descriptor */
@@ -131,7 +130,7 @@ static void list_place(void) {
   if (places[home])
     return;
   places[home] = digest;
-  size_t used = (size_t)snprintf(text, sizeof text, "place: %lu %016llx", calls, (unsigned long long)digest);
+  size_t used = (size_t)snprintf(text, sizeof text, "place: %lu %016llx", *calls, (unsigned long long)digest);
   used += put_frame(frames[ours], text + used, sizeof text - used - 2);
   snprintf(text + used, sizeof text - used, "\n");
   log_text(text);
@@ -144,16 +143,16 @@ static void list_place(void) {
 static bool fails(bool is_counted, const char *what) {
   if (!counting || !is_counted || (*only && strcmp(only, what) != 0))
     return false;
-  calls++;
+  const unsigned long call = __atomic_add_fetch(calls, 1, __ATOMIC_RELAXED);
   if (lists_places) {
     counting = false;
     list_place();
     counting = true;
   }
-  if (at == 0 || calls < at || (calls > at && !goes_on))
+  if (at == 0 || call < at || (call > at && !goes_on))
     return false;
   counting = false; /* what the log needs is no call of the program */
-  if (calls == at)
+  if (call == at)
     log_stack(what);
   counting = true;
   return true;
@@ -184,6 +183,9 @@ static const char *setting(const char *variable) {
 __attribute__((constructor)) static void read_settings(void) {
   static const int deadly[] = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT};
   void *frame;
+  calls = mmap(NULL, sizeof *calls, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  if (calls == MAP_FAILED)
+    abort();
   (void)backtrace(&frame, 1); /* the first call allocates */
   in_memory = strcmp(setting("FAULT_CALLS"), "memory") == 0;
   in_files = strcmp(setting("FAULT_CALLS"), "files") == 0;
@@ -208,7 +210,7 @@ static int counted_main(int count, char **words, char **environment) {
   counting = true;
   const int code = program_main(count, words, environment);
   counting = false;
-  snprintf(text, sizeof text, "calls: %lu\n", calls);
+  snprintf(text, sizeof text, "calls: %lu\n", *calls);
   log_text(text);
   return code;
 }

@@ -114,9 +114,10 @@ static int refuse_signal(const child *c, int number, message *why) {
   case SIGFPE:
   case SIGILL:
   case SIGABRT:
-    return refuse(why, EXIT_FILES,
-                  "%s: HDF5 crashed while it read it (signal %d): the file is damaged, or made to do that", c->path,
-                  number);
+    return refuse(
+        why, EXIT_FILES,
+        "%s: HDF5 crashed while it read it (signal %d): the file is damaged, or made to do that, or memory ran out",
+        c->path, number);
   case SIGKILL:
     return refuse(why, EXIT_FILES, "%s: what read it was killed (signal 9), as happens where memory runs out", c->path);
   default: /* a closed pipe, a key of the terminal */
@@ -130,8 +131,10 @@ static int outcome(const child *c, int status, message *why) {
   if (WIFSIGNALED(status))
     return refuse_signal(c, WTERMSIG(status), why);
   if (!c->answer->ended)
-    return refuse(why, EXIT_FILES, "%s: HDF5 ended while it read it (code %d): the file is damaged, or made to do that",
-                  c->path, WEXITSTATUS(status));
+    return refuse(
+        why, EXIT_FILES,
+        "%s: HDF5 ended while it read it (code %d): the file is damaged, or made to do that, or memory ran out",
+        c->path, WEXITSTATUS(status));
   c->answer->why.text[sizeof c->answer->why.text - 1] = '\0';
   if (WEXITSTATUS(status))
     escape_text(c->answer->why.text, why->text, sizeof why->text); /* it may repeat words of the file */
