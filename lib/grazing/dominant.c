@@ -70,8 +70,8 @@ static ric_status balance_matrix(balanced_map *b, ric_error *error) {
 
 static ric_status balance(balanced_map *b, ric_error *error) {
   size_t n = b->n;
+  long of_eta = normalise(b->eta, n), of_xi = normalise(b->xi, n);
   b->L_exponent = normalise(b->L, n * n);
-  b->c_exponent = normalise(b->eta, n) + normalise(b->xi, n);
   balance_vectors(b);
   RIC_TRY(balance_matrix(b, error));
   double sum = 0;
@@ -83,7 +83,11 @@ static ric_status balance(balanced_map *b, ric_error *error) {
   if (!(isfinite(sum) && isfinite(largest(b->L, n * n))))
     return ric_fail(error, RIC_ENUMERIC, "the numbers of the map differ too much in size to be balanced");
   b->L_exponent += normalise(b->L, n * n);
-  b->c_exponent += normalise(b->eta, n) + normalise(b->xi, n);
+  of_eta += normalise(b->eta, n);
+  of_xi += normalise(b->xi, n);
+  b->eta_error = scalbln(b->eta_error, -of_eta);
+  b->xi_error = scalbln(b->xi_error, -of_xi);
+  b->c_exponent = of_eta + of_xi;
   gsl_vector_view entries = gsl_vector_view_array(b->L, n * n);
   b->size = gsl_blas_dnrm2(&entries.vector);
   return RIC_OK;
@@ -91,7 +95,8 @@ static ric_status balance(balanced_map *b, ric_error *error) {
 
 ric_status balanced_map_init(balanced_map *b, const ric_grazing_map *map, ric_error *error) {
   size_t n = map->size, used = 0;
-  *b = (balanced_map){.n = n, .block = balanced_map_room(n, 1, 3)};
+  *b = (balanced_map){
+      .n = n, .eta_error = map->eta_error, .xi_error = map->xi_error, .block = balanced_map_room(n, 1, 3)};
   if (!b->block)
     return ric_fail(error, RIC_ENOMEM, "no memory for a map of size %zu", n);
   b->L = number_block_take(b->block, &used, n * n);
@@ -194,14 +199,29 @@ static double dot_moduli(const double *x, const double *y, size_t n) {
   return sum;
 }
 
-/* Components of eta and xi along the eigenvectors; zero if below zero_tol of their terms, or below a hundred times
- * their rounding.
+/* What errors of the entries of eta make of eta x, and those of xi of x xi. */
+static double from_eta(const balanced_map *map, const double *x) {
+  double sum = 0;
+  for (size_t k = 0; k < map->n; k++)
+    sum += map->scale[k] * fabs(x[k]);
+  return map->eta_error * sum;
+}
+
+static double from_xi(const balanced_map *map, const double *x) {
+  double sum = 0;
+  for (size_t k = 0; k < map->n; k++)
+    sum += fabs(x[k]) / map->scale[k];
+  return map->xi_error * sum;
+}
+
+/* Components of eta and xi along the eigenvectors; zero if below zero_tol of their terms, below a hundred times their
+ * rounding, or below what eta and xi are known to.
  */
 static void evaluate_components(dominant_multiplier *d, const balanced_map *map, double condition, double zero_tol) {
   size_t n = map->n;
   double rounding = 100 * d->accuracy;
-  double of_observed = zero_tol * dot_moduli(map->eta, d->right, n);
-  double of_excited = zero_tol * dot_moduli(d->left, map->xi, n);
+  double of_observed = fmax(zero_tol * dot_moduli(map->eta, d->right, n), from_eta(map, d->right));
+  double of_excited = fmax(zero_tol * dot_moduli(d->left, map->xi, n), from_xi(map, d->left));
   d->observed = dot(map->eta, d->right, n);
   d->excited = dot(d->left, map->xi, n);
   d->observed_tol = fmax(of_observed, rounding * sqrt(dot(map->eta, map->eta, n)));
@@ -288,6 +308,7 @@ static void evaluate_coefficient(coefficient_run *run) {
     run->value += term;
     run->terms += fabs(term);
   }
+  run->given = from_eta(run->map, run->x) + scalbln(from_xi(run->map, run->row), run->row_exponent - run->x_exponent);
 }
 
 static void noise_bound_init(noise_bound *noise, double rate) {
@@ -368,7 +389,7 @@ static double uncertain_part(const coefficient_run *run) {
 int coefficient_run_sign(const coefficient_run *run, double zero_tol) {
   double unit = fmax((double)run->map->n * DBL_EPSILON, entry_tol);
   double noise = run->i > 0 ? unit * fmin(noise_of(&run->noise[0]), noise_of(&run->noise[1])) : 0;
-  double tolerance = fmax(zero_tol, unit) * run->terms + noise + uncertain_part(run);
+  double tolerance = fmax(zero_tol, unit) * run->terms + run->given + noise + uncertain_part(run);
   if (!(fabs(run->value) > tolerance))
     return 0;
   return run->value > 0 ? 1 : -1;

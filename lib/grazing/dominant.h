@@ -16,6 +16,8 @@ typedef struct balanced_map {
   double *eta, *xi; /* [n] */
   double *scale;    /* [n] D */
   double size;      /* Frobenius norm of L */
+  double eta_error; /* an entry k of eta may be off by eta_error times scale[k], ... */
+  double xi_error;  /* ... of xi by xi_error over scale[k] */
   long L_exponent;  /* L of the map is D L D^-1 times 2 to this */
   long c_exponent;  /* c_i of the map is eta L^i xi times 2 to this and to i times L_exponent */
   double *block;
@@ -89,7 +91,8 @@ typedef struct coefficient_run {
   double *next;    /* [n] work */
   long x_exponent, row_exponent;
   double value;       /* c_i and ... */
-  double terms;       /* ... the sum of the moduli of its terms, over 2^x_exponent */
+  double terms;       /* ... the sum of the moduli of its terms, ... */
+  double given;       /* ... and what errors of eta and xi make of it, over 2^x_exponent */
   double log_modulus; /* log2 |lambda| */
   double uncertain;   /* log2 of the uncertainty of the dominant multiplier's part */
   noise_bound noise[2];

@@ -125,25 +125,36 @@ static ric_status degenerate_acceleration(const gap_minimum *k, double period, d
 /* Contacts of an event-driven run other than the grazing contact itself. */
 typedef struct contact_record {
   const ric_grazing *g;
-  double slowest; /* least gap rate of transversal impacts */
+  double slowest; /* gap rate of impacts, below which they are grazing contacts */
   char found[160];
 } contact_record;
 
-static bool is_grazing_contact(const ric_grazing *g, const ric_event *e) {
+/* An impact whose depth is rounding, or nearly so: it is a grazing contact, too, as which it may be met. */
+static bool is_slow(const contact_record *w, const ric_event *e) {
+  return (e->kind == RIC_EVENT_TRANSVERSAL || e->kind == RIC_EVENT_SIMULTANEOUS) && -e->gap_rate <= w->slowest;
+}
+
+/* A slow impact is that much before the minimum of the gap. */
+static bool is_grazing_contact(const contact_record *w, const ric_event *e) {
+  const ric_grazing *g = w->g;
+  const double early = is_slow(w, e) ? -2 * e->gap_rate / g->local.acceleration : 0;
   const double apart = fabs(remainder(e->time - g->time, g->period));
-  return e->obstacle == g->local.obstacle && apart <= same_time_tol * g->period;
+  return e->obstacle == g->local.obstacle && apart <= same_time_tol * g->period + early;
 }
 
 static int on_contact(const ric_event *e, void *user) {
   contact_record *w = user;
-  if (is_grazing_contact(w->g, e))
+  if (is_grazing_contact(w, e))
     return 0;
   if (e->kind == RIC_EVENT_GRAZING)
     snprintf(w->found, sizeof w->found,
              "two grazing points at once: the gap of obstacle %zu has the minimum %.3g at t = %g, too", e->obstacle,
              e->depth, e->time);
-  else if (e->kind != RIC_EVENT_CONTACT && e->kind != RIC_EVENT_PARTING &&
-           !(e->kind == RIC_EVENT_TRANSVERSAL && -e->gap_rate > w->slowest))
+  else if (is_slow(w, e))
+    snprintf(w->found, sizeof w->found,
+             "two grazing points at once: obstacle %zu is touched with the gap rate %.3g at t = %g, too", e->obstacle,
+             e->gap_rate, e->time);
+  else if (e->kind != RIC_EVENT_CONTACT && e->kind != RIC_EVENT_PARTING && e->kind != RIC_EVENT_TRANSVERSAL)
     snprintf(w->found, sizeof w->found, "an impact that is not transversal: %s, obstacle %zu, at t = %g",
              ric_event_name(e->kind), e->obstacle, e->time);
   return w->found[0] != 0;

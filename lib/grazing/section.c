@@ -392,6 +392,13 @@ static void set_basis(section *k) {
 
 /* --- the coefficients --- */
 
+/* Accuracy of what is integrated along the motion, relative to the largest numbers on the way. */
+static const double integrated_tol = 1e-12;
+
+static double length(const double *x, size_t count) {
+  return sqrt(dot(x, x, count));
+}
+
 static ric_status transfer(section *k, double from, double to, ric_error *error) {
   return ric_shooting_transfer(k->f->shooting, k->g->z, k->g->given, from, to, k->x, k->matrix, error);
 }
@@ -427,12 +434,16 @@ static ric_status set_L(section *k, double *L, ric_error *error) {
 }
 
 /* The minimum of the gap does not depend on its time: eta acts on differences at one time. */
-static ric_status set_eta(section *k, double *eta, ric_error *error) {
+static ric_status set_eta(section *k, ric_grazing_map *map, ric_error *error) {
+  double *eta = map->eta;
+  map->eta_error = 0;
   RIC_TRY(transfer(k, k->time, k->grazing_time, error));
   for (size_t j = 0; j < k->size; j++) {
     at_one_time(k, k->basis + j * k->state, k->from);
     multiply(k, k->from, k->goes);
     eta[j] = dot(k->g->local.eta, k->goes, k->numbers);
+    map->eta_error = fmax(map->eta_error, integrated_tol * length(k->g->local.eta, k->numbers) *
+                                              length(k->matrix, k->numbers * k->numbers) * length(k->from, k->numbers));
   }
   return RIC_OK;
 }
@@ -448,9 +459,11 @@ static void set_after(section *k, const double *added, double *z) {
 static ric_status set_map(section *k, ric_grazing_map *map, ric_error *error) {
   const ric_grazing *g = k->g;
   RIC_TRY(set_L(k, map->L, error));
-  RIC_TRY(set_eta(k, map->eta, error));
+  RIC_TRY(set_eta(k, map, error));
   RIC_TRY(transfer(k, k->grazing_time, k->time + g->period, error));
   set_after(k, g->local.xi, map->xi);
+  map->xi_error = integrated_tol * length(k->matrix, k->numbers * k->numbers) * length(g->local.xi, k->numbers) *
+                  (1 + length(k->rates, k->state) / fabs(dot(k->normal, k->rates, k->state)));
   map->stretch = sqrt(2 * g->local.acceleration);
   return RIC_OK;
 }

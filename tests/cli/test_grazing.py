@@ -214,6 +214,19 @@ def test_touches_of_motions_that_pass_a_wall_do_not_count(ricochet, folder):
     assert found["outcome"] == ["none"] and b"ends: bound" in found["reason"][0]
 
 
+def test_the_verdict_is_the_same_on_all_sections(ricochet, folder):
+    """x'' + x = a cos 2t: an elastic contact at its turning point changes nothing on the section there, so that xi is 0
+    but for rounding; its multiplier is -1."""
+    text = """kind: grazing
+model: {type: chain, particles: 1, ends: free, gamma: 0, floor: null, wall: 1, force: 1, frequency: 2}
+orbit: {motion: forced}
+branch: {parameter: model.force, from: 1, to: 10}
+sweep: {parameter: grazing.section, from: 0, to: 0.95, points: 20}
+"""
+    found = read(run(ricochet, folder, text))
+    assert found["verdict"] == ["undecided"] * 20 and all(b"multiplier" in reason for reason in found["verdict_reason"])
+
+
 def test_rows_without_a_grazing_point_say_why(ricochet, folder):
     """Two particles alike, without coupling: the walls at one place are touched at once."""
     text = ONE.replace("particles: 1", "particles: 2").replace("wall: 1", "wall: [1, 2]") + (

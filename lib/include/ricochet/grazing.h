@@ -47,7 +47,7 @@ typedef struct ric_grazing_options {
   double touch_tol; /* 1e-6: another minimum of a gap within it of zero is a second grazing point; at most 0.01 in units
                        of the gap */
   double degenerate;  /* 1e-6: A_g T^2 below it is `A_g near zero` */
-  double transversal; /* 1e-6: an impact of the motion whose gap rate times T is below it is `not transversal` */
+  double transversal; /* 1e-6: an impact of the motion whose gap rate times T is below it is a second grazing point */
 } ric_grazing_options;
 
 RIC_API ric_grazing_options ric_grazing_options_default(void);

@@ -33,12 +33,14 @@ RIC_BEGIN_DECLARATIONS
 /** Coefficients of the map. ric_grazing_map_init allocates the arrays, ric_grazing_map_clear frees them. The caller, or
  *  ric_grazing_section, fills the arrays; do not replace the pointers. */
 typedef struct ric_grazing_map {
-  size_t size;    /* of z, >= 1 */
-  double *L;      /* [size][size] row-major */
-  double *eta;    /* [size] */
-  double *xi;     /* [size] */
-  double *kappa;  /* [size] */
-  double stretch; /* s > 0 */
+  size_t size;                /* of z, >= 1 */
+  double *L;                  /* [size][size] row-major */
+  double *eta;                /* [size] */
+  double *xi;                 /* [size] */
+  double *kappa;              /* [size] */
+  double stretch;             /* s > 0 */
+  double eta_error, xi_error; /* how far an entry of eta, of xi may be off; 0: not by more than rounding of its own. An
+                                 entry that is zero by symmetry is what cancels, and says nothing of its error */
 } ric_grazing_map;
 
 /** Allocates a map of this size, all zero except stretch = 1. @returns RIC_EINVAL for a size of 0; RIC_ENOMEM: nothing
