@@ -48,7 +48,8 @@ int hdf5_start(const file_place *at) {
   failure.reason.text[0] = '\0';
   failure.memory = false;
   errno = 0;
-  if (!has_room() || H5Eset_auto2(H5E_DEFAULT, note_failure, NULL) < 0)
+  const bool started = has_room() && H5Eset_auto2(H5E_DEFAULT, note_failure, NULL) >= 0;
+  if (!started || errno == ENOMEM) /* HDF5 overlooks that a file driver could not be registered */
     return refuse(at->why, EXIT_RUN, "%s: HDF5 cannot start: out of memory", at->path);
   return 0;
 }
