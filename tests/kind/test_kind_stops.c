@@ -2,15 +2,7 @@
 #include "kind/fill.h"
 #include "study/study_cases.h"
 
-/* Says stop from its `limit`-th call on. */
-typedef struct countdown {
-  int calls, limit;
-} countdown;
-
-static int count(void *user) {
-  countdown *c = user;
-  return ++c->calls >= c->limit;
-}
+#include "witness/countdown.h"
 
 static void large_memory_is_filled_in_pieces(void **state) {
   (void)state;

@@ -1,17 +1,8 @@
 /* The poll callback: asked during every computation, and obeyed at any moment. */
 #include "support.h"
 
+#include "witness/countdown.h"
 #include "witness/solved_orbit.h"
-
-/* Says stop from its `limit`-th call on. */
-typedef struct countdown {
-  int calls, limit;
-} countdown;
-
-static int count(void *user) {
-  countdown *c = user;
-  return ++c->calls >= c->limit;
-}
 
 static ric_orbit_solver *polled_solver(countdown *c, ric_orbit_method method) {
   ric_orbit_options options = ric_orbit_options_default();

@@ -5,6 +5,8 @@
 #include "support.h"
 #include "synthetic.h"
 
+#include "witness/countdown.h"
+
 #define RESULT_FILE "to_be_damaged.h5"
 
 typedef struct bytes {
@@ -78,16 +80,6 @@ static void good_file_verifies(void **state) {
   (void)state;
   message why = {""};
   assert_int_equal(result_verify(RESULT_FILE, (ric_poll){0}, &why), 0);
-}
-
-/* Says stop from its `limit`-th call on. */
-typedef struct countdown {
-  int calls, limit;
-} countdown;
-
-static int count(void *user) {
-  countdown *c = user;
-  return ++c->calls >= c->limit;
 }
 
 static void verifying_stops_at_any_call(void **state) {
