@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "attractor.h"
+#include "cycle_growth.h"
 #include "map_simd.h"
 #include "numeric/constants.h"
 #include "numeric/linear.h"
@@ -41,7 +42,10 @@ struct ric_map_runner {
   size_t *cycle;          /* [width] length of the cycle */
   bool *diverged;         /* [width] diverged */
   size_t *sound;          /* [width] the last iterate known before a map diverged */
+  cycle_growth growth;    /* with exponents */
   /* of the present block: */
+  const ric_grazing_map *const *maps; /* borrowed */
+  const double *d;                    /* borrowed */
   ric_attractor *attractors;
   size_t count, left;   /* maps; those that have not diverged */
   size_t done, checked; /* iterates; at the last check */
@@ -126,6 +130,8 @@ ric_status ric_map_runner_create(size_t size, const ric_attractor_options *optio
   ric_status status = allocate_runner(r, size, error);
   if (status == RIC_OK)
     status = set_directions(r, error);
+  if (status == RIC_OK && o.exponents > 0)
+    status = cycle_growth_init(&r->growth, size, error);
   if (status != RIC_OK)
     ric_map_runner_destroy(&r);
   *runner = r;
@@ -140,6 +146,7 @@ void ric_map_runner_destroy(ric_map_runner **runner) {
   free((*runner)->diverged);
   free((*runner)->cycle);
   free((*runner)->sound);
+  cycle_growth_clear(&(*runner)->growth);
   free(*runner);
   *runner = NULL;
 }
@@ -366,8 +373,18 @@ static void end_measuring(ric_map_runner *r) {
   r->block.vectors = 0;
 }
 
-/* Results of a map at the end of its run. */
-static void set_results(ric_map_runner *r, size_t lane) {
+/* Of a cycle the numbers of one period. @returns RIC_ESTOPPED */
+static ric_status set_cycle_results(ric_map_runner *r, size_t lane, ric_error *error) {
+  const ric_attractor_options *o = &r->options;
+  ric_attractor *a = &r->attractors[lane];
+  a->impacts = cycle_impacts(r->maps[lane], r->d[lane], r->orbit, a->period);
+  return a->exponents && o->exponents > 0 ? cycle_exponents(&r->growth, r->maps[lane], r->d[lane], r->orbit, a->period,
+                                                            o->poll, a->exponents, o->exponents, error)
+                                          : RIC_OK;
+}
+
+/* Results of a map at the end of its run. @returns RIC_ESTOPPED */
+static ric_status set_results(ric_map_runner *r, size_t lane, ric_error *error) {
   const ric_attractor_options *o = &r->options;
   size_t size = r->block.size;
   ric_attractor *a = &r->attractors[lane];
@@ -382,12 +399,15 @@ static void set_results(ric_map_runner *r, size_t lane) {
   if (a->lowest)
     memcpy(a->lowest, r->orbit + size * period_lowest(r->orbit, size, 2 * o->period_limit + 1, o->observe),
            size * sizeof *a->lowest);
+  return a->period > 0 ? set_cycle_results(r, lane, error) : RIC_OK;
 }
 
 static void begin_run(ric_map_runner *r, const ric_grazing_map *const *maps, const double *d, ric_attractor *attractors,
                       size_t count) {
   size_t width = r->block.width;
   map_block_load(&r->block, maps, d, count);
+  r->maps = maps;
+  r->d = d;
   r->attractors = attractors;
   r->count = r->left = count;
   r->done = r->checked = r->counted = 0;
@@ -412,10 +432,7 @@ static ric_status run_block(ric_map_runner *r, ric_error *error) {
   end_measuring(r);
   RIC_TRY(trace_maps(r, 2 * o->period_limit, error));
   for (size_t l = 0; l < r->count; l++)
-    if (!r->diverged[l])
-      set_results(r, l);
-    else
-      RIC_TRY(erase(r, l, error));
+    RIC_TRY(r->diverged[l] ? erase(r, l, error) : set_results(r, l, error));
   return RIC_OK;
 }
 
