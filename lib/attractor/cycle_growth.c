@@ -42,6 +42,21 @@ ric_status cycle_growth_init(cycle_growth *g, size_t size, ric_error *error) {
   return RIC_OK;
 }
 
+size_t cycle_growth_resolve(cycle_growth *g, size_t period, double *exponents, size_t count) {
+  const ric_multiplier_options options = ric_multiplier_options_default();
+  const double size = largest(g->product, g->size * g->size);
+  size_t known = 0;
+  if (!isfinite(size) || multiplier_work_find(&g->work, g->product, 0, &options, &g->multipliers, NULL) != RIC_OK)
+    return 0;
+  for (; known < count; known++) {
+    const double modulus = ric_hypot(g->multipliers.mu[known].re, g->multipliers.mu[known].im);
+    if (!(modulus > resolved * size))
+      break;
+    exponents[known] = ric_log(modulus) / (double)period;
+  }
+  return known;
+}
+
 double cycle_impacts(const ric_grazing_map *map, double d, const double *states, size_t period) {
   size_t impacts = 0;
   for (size_t k = 0; k < period; k++)
@@ -84,22 +99,14 @@ static ric_status measure_tangents(cycle_growth *g, const ric_grazing_map *map, 
 
 ric_status cycle_exponents(cycle_growth *g, const ric_grazing_map *map, double d, const double *states, size_t period,
                            ric_poll poll, double *exponents, size_t count, ric_error *error) {
-  const ric_multiplier_options options = ric_multiplier_options_default();
   const size_t n = g->size;
   for (size_t i = 0; i < n; i++)
     for (size_t j = 0; j < n; j++)
       g->product[i * n + j] = i == j;
   RIC_TRY(pass_period(g, map, d, states, period, false, poll, error));
-  const double size = largest(g->product, n * n);
-  if (!isfinite(size) || multiplier_work_find(&g->work, g->product, 0, &options, &g->multipliers, NULL) != RIC_OK)
+  size_t known = cycle_growth_resolve(g, period, exponents, count);
+  if (known == 0)
     return RIC_OK; /* a state on the border */
-  size_t known = 0;
-  for (; known < count; known++) {
-    const double modulus = ric_hypot(g->multipliers.mu[known].re, g->multipliers.mu[known].im);
-    if (!(modulus > resolved * size))
-      break;
-    exponents[known] = ric_log(modulus) / (double)period;
-  }
   if (known < count)
     RIC_TRY(measure_tangents(g, map, d, states, period, poll, error));
   for (; known < count; known++)

@@ -1,4 +1,4 @@
-/* What a map does along one period of a cycle: multipliers as exponents, impacts. Internal to the room.
+/* Growth along one period of a cycle: multipliers as exponents, impacts. Internal to the room.
  *
  * Averages over a number of iterates that is no multiple of the period are off by up to a period's worth, which near
  * the edge of a window has the wrong sign. One period gives both exactly. */
@@ -21,6 +21,12 @@ typedef struct cycle_growth {
 /** Errors handled by GSL must be off. @returns RIC_ENOMEM, with nothing to clear */
 ric_status cycle_growth_init(cycle_growth *growth, size_t size, ric_error *error);
 void cycle_growth_clear(cycle_growth *growth);
+
+/** Sets the exponents ln |mu| / period, largest first, of the derivative of a period in `product`, as far as the
+ *  multipliers mu stand above its rounding.
+ *  @param exponents  [count], count <= size; the others are left as they are
+ *  @returns how many are set; 0 for a derivative that is not finite */
+size_t cycle_growth_resolve(cycle_growth *growth, size_t period, double *exponents, size_t count);
 
 /** Mean number of impacts per iterate. @param states  [period][size] */
 double cycle_impacts(const ric_grazing_map *map, double d, const double *states, size_t period);

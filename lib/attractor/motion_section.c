@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "attractor.h"
+#include "cycle_growth.h"
 #include "floquet/lyapunov.h"
 #include "impact/trajectory.h"
 #include "numeric/constants.h"
@@ -218,7 +219,8 @@ static const double NOISE = 1e-9;
 struct ric_motion_section {
   crossings crossings;
   lyapunov_course course;
-  double *window; /* the states of which the period is determined */
+  cycle_growth growth; /* of the size of the system's states */
+  double *window;      /* the states of which the period is determined */
   size_t window_room;
 };
 
@@ -261,6 +263,7 @@ void ric_motion_section_destroy(ric_motion_section **section) {
     return;
   crossings_clear(&(*section)->crossings);
   lyapunov_course_clear(&(*section)->course);
+  cycle_growth_clear(&(*section)->growth);
   free((*section)->window);
   free(*section);
   *section = NULL;
@@ -444,9 +447,76 @@ static ric_status measure(section_run *j, ric_error *error) {
   return RIC_OK;
 }
 
+/* One period more, of a cycle. @param complete  whether the motion went on, with its tangent vectors if it has any */
+static ric_status run_period(section_run *j, bool *complete, ric_error *error) {
+  crossings *c = &j->section->crossings;
+  const size_t columns = ric_trajectory_columns(c->trajectory);
+  const bool course = c->course != NULL;
+  *complete = true;
+  c->impacts = 0;
+  for (size_t left = j->attractor->period, asked; left > 0 && *complete; left -= asked) {
+    ric_run run;
+    asked = left < CROSSINGS_MOST ? left : CROSSINGS_MOST;
+    RIC_TRY(crossings_next(c, asked, &run, error));
+    *complete = c->found == asked && (course ? c->course != NULL : ric_trajectory_columns(c->trajectory) == columns);
+  }
+  return RIC_OK;
+}
+
+/* Tangent vectors along all axes, for the derivative of a period. */
+static ric_status carry_all(section_run *j, ric_error *error) {
+  crossings *c = &j->section->crossings;
+  cycle_growth *g = &j->section->growth;
+  const size_t size = c->n + c->m;
+  if (g->size == 0)
+    RIC_TRY(cycle_growth_init(g, size, error));
+  memset(g->product, 0, size * size * sizeof *g->product);
+  for (size_t i = 0; i < size; i++)
+    g->product[i * size + i] = 1;
+  return ric_trajectory_carry(c->trajectory, size, g->product, c->m ? g->product + c->n * size : NULL, error);
+}
+
+/* Exponents from the given one on, which vanish in the rounding of the derivative, by the growth of orthogonal tangent
+ * vectors: in the first period they turn. */
+static ric_status measure_contracting(section_run *j, size_t from, ric_error *error) {
+  crossings *c = &j->section->crossings;
+  bool complete;
+  RIC_TRY(prepare_course(j->section, j->options->exponents, error));
+  c->course = &j->section->course;
+  RIC_TRY(run_period(j, &complete, error));
+  lyapunov_course_forget(&j->section->course);
+  if (complete)
+    RIC_TRY(run_period(j, &complete, error));
+  for (size_t k = from; complete && k < j->options->exponents; k++)
+    j->attractor->exponents[k] = j->section->course.sum[k] / (double)j->attractor->period;
+  return RIC_OK;
+}
+
+/* Of a cycle the numbers of one period. */
+static ric_status measure_cycle(section_run *j, bool exponents, ric_error *error) {
+  crossings *c = &j->section->crossings;
+  cycle_growth *g = &j->section->growth;
+  ric_attractor *a = j->attractor;
+  bool complete;
+  if (exponents)
+    RIC_TRY(carry_all(j, error));
+  RIC_TRY(run_period(j, &complete, error));
+  if (complete)
+    a->impacts = (double)c->impacts / (double)a->period;
+  if (!complete || !exponents)
+    return RIC_OK;
+  memcpy(g->product, ric_trajectory_dq(c->trajectory), c->n * g->size * sizeof *g->product);
+  if (c->m)
+    memcpy(g->product + c->n * g->size, ric_trajectory_du(c->trajectory), c->m * g->size * sizeof *g->product);
+  const size_t known = cycle_growth_resolve(g, a->period, a->exponents, j->options->exponents);
+  RIC_TRY(ric_trajectory_carry(c->trajectory, 0, NULL, NULL, error));
+  return known > 0 && known < j->options->exponents ? measure_contracting(j, known, error) : RIC_OK;
+}
+
 static ric_status find_period(section_run *j, ric_error *error) {
   size_t limit = j->options->period_limit;
   ric_attractor *a = j->attractor;
+  const bool exponents = j->section->crossings.course != NULL;
   j->section->crossings.course = NULL;
   RIC_TRY(ric_trajectory_carry(j->section->crossings.trajectory, 0, NULL, NULL, error));
   RIC_TRY(run_iterates(j, 2 * limit, error));
@@ -459,7 +529,7 @@ static ric_status find_period(section_run *j, ric_error *error) {
     size_t lowest = period_lowest(j->section->window, j->width, 2 * limit + 1, j->options->observe);
     memcpy(a->lowest, j->section->window + lowest * j->width, j->section->crossings.size * sizeof *a->lowest);
   }
-  return RIC_OK;
+  return a->period ? measure_cycle(j, exponents, error) : RIC_OK;
 }
 
 static ric_status run_all(section_run *j, ric_error *error) {

@@ -61,7 +61,7 @@ static void windows_have_their_periods(void **state) {
   for (size_t n = 7; n <= 12; n++) {
     ric_system *system = oscillator(middle_of_window(n));
     ric_motion_section_options section = strobes();
-    ric_attractor_options options = section_attractor_options(2000, 10 * n);
+    ric_attractor_options options = section_attractor_options(2000, 10 * n + 3); /* no whole periods */
     f.z[0] = f.z[1] = 0;
     section_run_on(system, &section, &options, &f);
     assert_int_equal(f.attractor.kind, RIC_ATTRACTOR_PERIODIC);
@@ -116,7 +116,7 @@ static void exponents_of_periodic_motions_are_logarithms_of_multipliers(void **s
   for (size_t n = 7; n <= 9; n++) {
     ric_system *system = oscillator(middle_of_window(n));
     ric_motion_section_options section = strobes();
-    ric_attractor_options options = section_attractor_options(2000, 200 * n);
+    ric_attractor_options options = section_attractor_options(2000, 200 * n + 5); /* no whole periods */
     options.exponents = 2;
     strobe.z[0] = strobe.z[1] = 0;
     section_run_on(system, &section, &options, &strobe);
@@ -127,9 +127,9 @@ static void exponents_of_periodic_motions_are_logarithms_of_multipliers(void **s
     section_run_on(system, &section, &options, &impact);
     assert_int_equal(impact.attractor.period, 1);
     assert_close(impact.attractor.impacts, 1, 0);
-    double expected = log_of_multiplier(system, impact.z, n); /* sums over iterates are bounded */
-    assert_close(strobe.exponents[0], expected / (double)n, 2 / (double)(200 * n));
-    assert_close(impact.exponents[0], expected, 2.0 / 200);
+    double expected = log_of_multiplier(system, impact.z, n);
+    assert_close(strobe.exponents[0], expected / (double)n, 1e-6);
+    assert_close(impact.exponents[0], expected, 1e-6);
   }
 }
 

@@ -3,8 +3,8 @@
  * The iterates are those of a map (ric_map_runner below) or the crossings of a motion with a Poincare section
  * (motion_section.h). A run discards `transient` iterates and stores the `keep` iterates that follow. Exponents and
  * impacts are averaged over the `measure` iterates after the transient, which include the stored ones. Another 2
- * period_limit iterates then decide whether the attractor is periodic. Exponents and impacts of a cycle of a map are
- * those of one period: the logarithm of the modulus of a multiplier over the period.
+ * period_limit iterates then decide whether the attractor is periodic. If it is, exponents and impacts are those of one
+ * period: the logarithm of the modulus of a multiplier over the period.
  *
  * The attractor has period p when, in all of these last iterates,
  *

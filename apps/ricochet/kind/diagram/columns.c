@@ -26,8 +26,10 @@ static const column row_columns[] = {
            .doc = "period in iterates, 0: none up to the limit; attributes `period_limit` and `period_tol`: the states "
                   "return to within this fraction of their extent. Near the edges of windows convergence is slow, and "
                   "a period may not be detected"),
-    COLUMN("impacts", NUMBER(diagram_row, impacts), "impacts per iterate, on the average", SOURCE,
-           .doc = "mean number of impacts per iterate over `iterate.measure`; NaN if diverged or failed"),
+    COLUMN(
+        "impacts", NUMBER(diagram_row, impacts), "impacts per iterate, on the average", SOURCE,
+        .doc =
+            "mean number of impacts per iterate over a period, or over `iterate.measure`; NaN if diverged or failed"),
 };
 
 /* Of diagrams. */
