@@ -57,11 +57,11 @@ def test_a_name_with_control_characters_is_refused(ricochet, folder, result):
         assert "control characters" in refused.err and "\x1b" not in refused.err
 
 
-@pytest.mark.parametrize("shape", [(2**62,), (2**40, 2**40)])
-def test_a_data_set_that_claims_more_than_the_file_holds_is_refused_at_once(ricochet, folder, result, shape):
+@pytest.mark.parametrize(("shape", "chunk", "of"), [((2**62,), (1024,), "f8"), ((2**40, 2**40), (1024, 1024), "f8"),
+                                                    ((2**24,), (1,), "i1"), ((2**12, 2**12), (1, 1), "i1")])  # fmt: skip
+def test_a_data_set_that_claims_more_than_the_file_holds_is_refused_at_once(ricochet, folder, result, shape, chunk, of):
     with h5py.File(result, "r+") as file:
-        chunks = (1024,) * len(shape)
-        data = file["orbits"].create_dataset("huge", shape, "f8", chunks=chunks, fletcher32=True)
+        data = file["orbits"].create_dataset("huge", shape, of, chunks=chunk, fletcher32=True)
         for name in ("units", "long_name", "source"):
             data.attrs[name] = np.bytes_("1")
         data.attrs["axes"] = np.bytes_("task" if len(shape) == 1 else "task sample")

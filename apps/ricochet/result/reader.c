@@ -217,27 +217,39 @@ out:
   return hdf5_close(at, type, code);
 }
 
-/* Values can also be in other files, which HDF5 would open. */
-static int check_inside(const file_place *at, hid_t set, const char *name) {
-  int code = 0;
-  hid_t list = H5I_INVALID_HID;
-  HDF5_TRY(at, list = H5Dget_create_plist(set), "read %s", name);
-  if (H5Pget_layout(list) == H5D_VIRTUAL || H5Pget_external_count(list) > 0)
-    code = refuse(at->why, EXIT_FILES, "%s: the values of %s are in another file", at->path, name);
-out:
-  return hdf5_close(at, list, code);
+/* Every chunk takes some bytes of the file, if only those of its checksum: each is looked up by itself. */
+static bool chunks_fit(hid_t list, int rank, const uint64_t *shape, uint64_t file_bytes) {
+  hsize_t chunk[H5S_MAX_RANK];
+  uint64_t chunks = 1;
+  if (H5Pget_layout(list) != H5D_CHUNKED || rank < 1)
+    return true;
+  bool fits = H5Pget_chunk(list, rank, chunk) == rank;
+  for (int i = 0; fits && i < rank; i++)
+    fits = !__builtin_mul_overflow(chunks, shape[i] / chunk[i] + (shape[i] % chunk[i] != 0), &chunks);
+  return fits && chunks <= file_bytes;
+}
+
+static bool values_fit(int rank, const uint64_t *shape, size_t value_bytes, uint64_t file_bytes) {
+  enum { TIGHTEST = 1032 };
+  uint64_t bytes = value_bytes, most;
+  bool fits = !__builtin_mul_overflow(file_bytes, TIGHTEST, &most);
+  for (int i = 0; i < rank; i++)
+    fits = fits && (shape[i] == 0 || !__builtin_mul_overflow(bytes, shape[i], &bytes));
+  return fits && bytes <= most;
 }
 
 int reader_check_storage(const file_place *at, reader_handle set, const char *name, int rank, const uint64_t *shape,
                          size_t value_bytes) {
-  enum { TIGHTEST = 1032 };
-  uint64_t bytes = value_bytes, most;
-  bool fits = !__builtin_mul_overflow(file_bytes_of(set), TIGHTEST, &most);
-  for (int i = 0; i < rank; i++)
-    fits = fits && (shape[i] == 0 || !__builtin_mul_overflow(bytes, shape[i], &bytes));
-  if (fits && bytes <= most)
-    return check_inside(at, set, name);
-  return refuse(at->why, EXIT_FILES, "%s: damaged: %s claims more values than the file can hold", at->path, name);
+  int code = 0;
+  hid_t list = H5I_INVALID_HID;
+  const uint64_t file_bytes = file_bytes_of(set);
+  HDF5_TRY(at, list = H5Dget_create_plist(set), "read %s", name);
+  if (H5Pget_layout(list) == H5D_VIRTUAL || H5Pget_external_count(list) > 0) /* HDF5 would open that file */
+    code = refuse(at->why, EXIT_FILES, "%s: the values of %s are in another file", at->path, name);
+  else if (!values_fit(rank, shape, value_bytes, file_bytes) || !chunks_fit(list, rank, shape, file_bytes))
+    code = refuse(at->why, EXIT_FILES, "%s: damaged: %s claims more values than the file can hold", at->path, name);
+out:
+  return hdf5_close(at, list, code);
 }
 
 static int read_shape(const file_place *at, reader_set *s) {

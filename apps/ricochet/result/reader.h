@@ -66,8 +66,8 @@ bool reader_has(reader_handle file, const char *name);
 const reader_set *reader_find(const reader_group *g, const char *name);
 
 /** Refuses a data set with values in another file, or that claims more values than its file can hold (no filter packs
- * more tightly than deflate, 1032 to 1), so that whatever is multiplied and allocated for it stays in proportion to the
- * file. Every set of a reader_group has passed. @param shape  [rank] */
+ * more tightly than deflate, 1032 to 1; no chunk takes nothing), so that whatever is multiplied and allocated for it
+ * stays in proportion to the file. Every set of a reader_group has passed. @param shape  [rank] */
 int reader_check_storage(const file_place *at, reader_handle set, const char *name, int rank, const uint64_t *shape,
                          size_t value_bytes);
 
