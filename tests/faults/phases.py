@@ -9,7 +9,7 @@ import signal
 import time
 from pathlib import Path
 
-from program import DONE, assert_same, names, ranks_of, records, run_attributes, wait_until, write
+from program import DONE, assert_same, hears, names, ranks_of, records, run_attributes, wait_until, write
 
 ANY_COMMAND = ("heap_checksums",)  # holds addresses, which move with the length of the command line
 PHASES = ("start", "tasks", "tables", "result", "end")
@@ -74,6 +74,16 @@ class Paused:
     def processes(self):
         """{rank: process}; a single one is rank 0."""
         return ranks_of(self.run) if self.ranks else {0: self.run.pid}
+
+    def wait_for_handlers(self, number):
+        """Until all its processes hear a signal, or it has ended. Before the first instruction of a program its signals
+        are the system's."""
+
+        def hear():
+            pids = [self.run.pid, *self.processes().values()]
+            return self.run.poll() is not None or all(hears(pid, number) for pid in pids)
+
+        wait_until(hear, "the beginning of the program", 30)
 
     def end(self, limit):
         return self.ricochet.end(self.run, limit)

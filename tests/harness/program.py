@@ -172,6 +172,15 @@ def ranks_of(mpirun):
     return found
 
 
+def hears(pid, number):
+    """Whether a process has a handler for a signal, or has ended."""
+    try:
+        caught = re.search(r"^SigCgt:\s*(\w+)", Path(f"/proc/{pid}/status").read_text(), re.M)[1]
+    except OSError:
+        return True
+    return bool(int(caught, 16) >> (number - 1) & 1)
+
+
 def wait_until(condition, what, limit=LIMIT):
     deadline = time.monotonic() + limit
     while not condition():

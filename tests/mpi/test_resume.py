@@ -13,6 +13,7 @@ from program import (
     STOPPED,
     USAGE,
     assert_same,
+    hears,
     names,
     only,
     ranks_of,
@@ -27,6 +28,11 @@ from program import (
 
 TASKS = 200
 SLOW = study(particles=60000, at_start="[7]", orbit="states: false", sweep=sweep(TASKS))  # some 6 ms a task
+WINDOWS = """kind: diagram
+model: {type: grazing_map, lambda: 0.5, omega: 0.3}
+iterate: {transient: 150000000, keep: 0, measure: 10, start: [0, 0, 0], windows: true}
+sweep: {parameter: model.d, values: [0.003, 0.005]}
+"""  # two tasks of seconds, and then a search of 10 s
 OTHER = SLOW.replace("at_start: [7]", "at_start: [8]")
 ANY_COMMAND = ("heap_checksums",)  # holds addresses, which move with the length of the command line
 
@@ -129,6 +135,16 @@ def test_a_stop_is_quick_also_in_a_long_task(ricochet, folder):
         run.send_signal(signal.SIGCONT)
         more.append(tasks_in_message(ricochet.end(run).expect(STOPPED)) - done)
     assert set(more) <= {0, 1} and 0 in more, more
+
+
+def test_a_stop_of_one_rank_stops_the_search_of_all(ricochet, folder):
+    """The ranks work by themselves then."""
+    write(folder, "s.yaml", WINDOWS)
+    run = ricochet.start_run("s.yaml", cwd=folder, ranks=2)
+    wait_until(lambda: tasks_in(folder / "s.h5.ckpt") == 2, "the end of the tasks")
+    time.sleep(0.2)
+    os.kill(ranks_of(run)[1], signal.SIGUSR1)
+    ricochet.end(run, 5).expect(STOPPED).expect_line("s.h5: ", "SIGUSR1", "with all tasks done")
 
 
 # --- what --resume finds ---
@@ -281,12 +297,6 @@ def test_resume_waits_for_the_holder_to_leave(ricochet, folder):
         os.kill(pid, signal.SIGKILL)
     ricochet.end(second).expect_done()
     expect_uninterrupted_result(ricochet, folder)
-
-
-def hears(pid, number):
-    """Whether a process has a handler for a signal."""
-    caught = re.search(r"^SigCgt:\s*(\w+)", Path(f"/proc/{pid}/status").read_text(), re.M)[1]
-    return bool(int(caught, 16) >> (number - 1) & 1)
 
 
 @pytest.mark.parametrize("delay", [0, 0.05, 0.1, 0.2, 0.4])

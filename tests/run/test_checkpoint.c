@@ -284,6 +284,28 @@ static void a_stop_ends_the_reading_of_many_bytes(void **state) {
   free(rows);
 }
 
+/* The opening of a file may take as long as the reading of many bytes. */
+static void a_stop_ends_the_reading_of_rows_that_alternate_between_parts(void **state) {
+  enum { TASKS = 40 };
+  const checkpoint_identity identity = identity_of(TASKS, 8);
+  for (int rank = 0; rank < 2; rank++) {
+    checkpoint *c = begin_checkpoint(*state, &identity, rank);
+    for (uint64_t i = (uint64_t)rank; i < TASKS; i += 2)
+      append(c, &identity, i, 1);
+    checkpoint_close(&c);
+  }
+  checkpoint *c = open_checkpoint(*state, &identity);
+  unsigned char *rows = zero_rows(TASKS * 8);
+  message why;
+  stop_watch(0);
+  assert_int_equal(checkpoint_read(c, 0, 2, rows, &why), 0); /* little of it is finished */
+  assert_int_equal(checkpoint_read(c, 0, TASKS, rows, &why), EXIT_STOPPED);
+  stop_watch(INFINITY);
+  assert_rows(c, &identity, 0, TASKS);
+  checkpoint_close(&c);
+  free(rows);
+}
+
 /* The finished tasks of a stopped run are written, unless they are so large that nobody would wait. */
 static void a_stop_gives_up_only_a_huge_record(void **state) {
   enum { ROW = 10 << 20, FEW = 20, MANY = 30 };
@@ -321,6 +343,7 @@ int main(void) {
       checkpoint_test(removing_takes_the_parts_and_leaves_the_rest),
       checkpoint_test(folder_that_is_not_there_is_refused),
       checkpoint_test(a_stop_ends_the_reading_of_many_bytes),
+      checkpoint_test(a_stop_ends_the_reading_of_rows_that_alternate_between_parts),
       checkpoint_test(a_stop_gives_up_only_a_huge_record),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

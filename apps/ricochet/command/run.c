@@ -7,6 +7,7 @@
 #include "../result/result.h"
 #include "../run/launcher.h"
 #include "../run/ranks.h"
+#include "../run/scheduler.h"
 #include "arithmetic.h"
 #include "command.h"
 #include "run.h"
@@ -41,6 +42,7 @@ typedef struct run {
   output output;
   checkpoint *checkpoint;
   compute_result computed;
+  scheduler *stops; /* while there is a result to be made: a stop of one rank stops all */
   extra_rows extras[KIND_MOST_EXTRAS];
   table offsets; /* of the ragged tables; no columns without any */
   char *command;
@@ -124,9 +126,20 @@ static void note_mixed(run *r) {
             r->output.path);
 }
 
+/* The poll of what follows the tasks. The ranks work by themselves then: the shared counter of a scheduler without
+ * items tells all of them that one was asked to stop. */
+static int poll_ranks(void *user) {
+  const run *r = user;
+  if (stop_asked() != STOP_NONE)
+    scheduler_stop(r->stops);
+  return scheduler_poll(r->stops);
+}
+
 /* Rows from the checkpoint. */
 static int read_done(void *user, uint64_t first, uint64_t count, unsigned char *rows, message *why) {
-  const run *r = user;
+  run *r = user;
+  if (poll_ranks(r))
+    return refuse(why, EXIT_STOPPED, "%s: stopped while its tasks were read", r->output.path);
   return checkpoint_read(r->checkpoint, first, count, rows, why);
 }
 
@@ -226,7 +239,7 @@ static int write_result(run *r, message *why) {
                           .mixed = r->mixed,
                           .tasks_computed = r->computed.computed,
                           .tasks_resumed = r->resumed};
-  const result_hooks hooks = {.stop = {.call = stop_poll}, .commit = check_lock, .user = r};
+  const result_hooks hooks = {.stop = {.call = poll_ranks, .user = r}, .commit = check_lock, .user = r};
   result_table tables[MOST_TABLES];
   tail_source tails[KIND_MOST_TAILS];
   size_t count = list_tables(r, tables, tails);
@@ -260,7 +273,7 @@ static int agree_on_entries(run *r, message *why) {
 /* What tables there are besides those of the tasks, all of it or none. */
 static int find_extras(run *r, const row_source *done, message *why) {
   const unsigned long refusals = ric_memory_refusals();
-  const int code = r->kind->extra(r->study, &r->plan, done, (ric_poll){.call = stop_poll}, r->extras, why);
+  const int code = r->kind->extra(r->study, &r->plan, done, (ric_poll){.call = poll_ranks, .user = r}, r->extras, why);
   if (code || ric_memory_refusals() == refusals)
     return code;
   return refuse(why, EXIT_RUN, "%s: no memory for what follows the tasks; all of them are kept, --resume goes on",
@@ -281,9 +294,12 @@ static int assemble(run *r, message *why) {
     code = agree_on_entries(r, why);
   const row_source done = {.read = read_done, .user = r};
   if (!code)
+    code = ranks_agree(scheduler_create(0, &r->stops, why), why);
+  if (!code)
     code = ranks_agree(find_extras(r, &done, why), why);
   if (!code)
     code = write_result(r, why);
+  scheduler_destroy(&r->stops);
   ranks_sum(r->outcomes, 64);
   return code;
 }

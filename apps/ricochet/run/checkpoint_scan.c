@@ -10,7 +10,10 @@
 
 #include "stop.h"
 
-enum { READ_BYTES = 16 << 20 /* at a time */ };
+enum {
+  READ_BYTES = 16 << 20,  /* at a time */
+  OPENING_BYTES = 1 << 20 /* what is read in the time that the opening of a file takes on a slow network */
+};
 
 static void path_of(const checkpoint *c, size_t number, char *path) {
   part_path(c->folder, c->parts[number].generation, c->parts[number].rank, path);
@@ -59,6 +62,10 @@ static finding read_piece(const checkpoint *c, void *bytes, size_t size, uint64_
   return (uint64_t)got == size ? GOOD : BAD;
 }
 
+static int refuse_stopped(const checkpoint *c, message *why) {
+  return refuse(why, EXIT_STOPPED, "%s: stopped while it was read", c->folder);
+}
+
 finding read_part(checkpoint *c, void *bytes, size_t size, uint64_t offset, message *why) {
   finding found = GOOD;
   for (size_t done = 0; found == GOOD && done < size;) {
@@ -66,7 +73,7 @@ finding read_part(checkpoint *c, void *bytes, size_t size, uint64_t offset, mess
     found = read_piece(c, (char *)bytes + done, step, offset + done, why);
     done += step;
     if (found == GOOD && stop_asked_after(step, &c->unasked)) {
-      refuse(why, EXIT_STOPPED, "%s: stopped while it was read", c->folder);
+      refuse_stopped(c, why);
       found = STOPPED;
     }
   }
@@ -245,8 +252,14 @@ int refuse_record(const checkpoint *c, const index_range *range, message *why) {
                 (unsigned long long)range->first, (unsigned long long)(range->first + range->count - 1));
 }
 
+/* Records of two ranks that alternate make the files be opened again and again. */
+static int open_part_of_rows(checkpoint *c, size_t number, message *why) {
+  const bool opens = c->read_fd < 0 || c->read_part != number;
+  return opens && stop_asked_after(OPENING_BYTES, &c->unasked) ? refuse_stopped(c, why) : open_part(c, number, why);
+}
+
 int select_record(checkpoint *c, const index_range *range, message *why) {
-  const int code = open_part(c, range->part, why);
+  const int code = open_part_of_rows(c, range->part, why);
   if (code || (c->verified_offset == range->offset && c->verified_part == range->part))
     return code;
   c->verified_offset = 0;

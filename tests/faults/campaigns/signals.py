@@ -39,6 +39,8 @@ def signal_runs(subject, target, phase, number):
         chance = chance_of(f"{subject.name} {target} {phase} {number}")
         write(folder, "s.yaml", subject.text)
         run, there = subject.reach(ricochet, folder, ranks, phase, chance)
+        if number == signal.SIGUSR1:
+            run.wait_for_handlers(number)
         met = run.phase()
         at(run, number)
         ended, seconds = end_soon(lambda: run.end(60), number, ranks)
